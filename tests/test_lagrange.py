@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 
 from thermowear.geometry.mesh.nodes import reference_nodes, shape_functions, slopes
-from thermowear.lagrange import equispaced, gauss, lattice, lobatto, on_lattice, tabulated
+from thermowear.lagrange import (
+    corner_nodes,
+    edge_nodes,
+    equispaced,
+    gauss,
+    lattice,
+    lobatto,
+    neighbour_nodes,
+    on_lattice,
+    tabulated,
+)
 
 
 @pytest.mark.parametrize("n", range(2, 14))
@@ -88,6 +98,26 @@ def test_cells_in_the_order_of_gmsh(kind, order):
     assert (slopes(kind, order, places) @ nodes)[0] == pytest.approx(
         np.eye(len(places[0])), abs=1e-12
     )
+
+
+@pytest.mark.parametrize(
+    ("kind", "pairs", "edges"),
+    [("interval", 3, None), ("quadrilateral", 24, 4), ("triangle", 12, 3)],
+)
+def test_nodes_of_facets(kind, pairs, edges):
+    """requirement: corners, neighbours one step apart along the parameters, nodes along edges."""
+    nodes = lattice(3, kind).reshape(len(lattice(3, kind)), -1)
+    first, second = nodes[neighbour_nodes(3, kind).T]
+    assert len(first) == pairs
+    assert (second - first).max(axis=1) == pytest.approx(np.full(pairs, 1 / 3))
+    assert (second - first).sum(axis=1) == pytest.approx(np.full(pairs, 1 / 3))
+    corners = lattice(1, kind).reshape(-1, nodes.shape[1])
+    assert np.array_equal(nodes[corner_nodes(3, kind)], corners)
+    if edges:
+        along = nodes[edge_nodes(3, kind)]
+        assert along.shape == (edges, 4, 2)
+        assert np.diff(along, 2, axis=1) == pytest.approx(np.zeros((edges, 2, 2)), abs=1e-15)
+        assert np.linalg.norm(along[:, 3] - along[:, 0], axis=1).min() >= 1.0
 
 
 def test_no_points():

@@ -120,7 +120,7 @@ def neighbour_nodes(order: int, kind: str) -> np.ndarray:
     """Pairs of adjacent nodes of `lattice`, shape (n, 2)."""
     nodes = lattice(order, kind).reshape(len(lattice(order, kind)), -1)
     step = np.rint((nodes[None] - nodes[:, None]) * order)
-    return np.argwhere((step.sum(axis=2) == 1) & (step.min(axis=2) == 0))
+    return np.argwhere((step.sum(axis=2) == 1) & (step.min(axis=2) >= 0))
 
 
 @cache

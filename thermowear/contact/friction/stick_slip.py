@@ -61,7 +61,7 @@ def advance(
     if len(given) != len(state.motion):
         raise ValueError(f"loads: the holder has {len(state.motion)} motions, not {len(given)}")
     friction = np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure))
-    mean = contact.weighted.T @ contact.basis  # mass matrix: weak values from coefficients
+    mean = contact.mass
     # tangential: given at the end, or the current one if free
     displacement = float(np.where(np.isnan(given), state.motion, given)[1:].sum())
     worn = (

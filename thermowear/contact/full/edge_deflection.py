@@ -24,6 +24,7 @@ import numpy as np
 from scipy.linalg import null_space
 
 from ...bulk.mechanics.elasticity import Elasticity
+from ..operators.pressure import Basis, dense, scaled
 from ..search.pairing import Pairing
 from .nitsche import at_points
 
@@ -45,13 +46,13 @@ class EdgeDeflection:
 
 
 def edge_deflection(
-    basis: np.ndarray, weights: np.ndarray, points: np.ndarray, compliance: np.ndarray
+    basis: Basis, weights: np.ndarray, points: np.ndarray, compliance: np.ndarray
 ) -> EdgeDeflection:
     """Deflection of given points, orthogonal to the pressure space.
 
     Parameters
     ----------
-    basis : ndarray, shape (n, m)
+    basis : ndarray or csr_array, shape (n, m)
         Basis Ψ.
     weights : ndarray, shape (n,) [m²]
     points : ndarray of bool, shape (n,)
@@ -61,7 +62,7 @@ def edge_deflection(
     """
     moving = points & (weights > 0.0)  # without points on an axis, which have no area
     root = np.sqrt(weights[moving])
-    orthogonal = null_space((root[:, None] * basis[moving]).T)
+    orthogonal = null_space(scaled(root, dense(basis[moving])).T)
     modes = np.zeros((len(points), orthogonal.shape[1]))
     modes[moving] = orthogonal / root[:, None]
     return EdgeDeflection(modes, orthogonal.T @ (orthogonal / compliance[moving, None]))

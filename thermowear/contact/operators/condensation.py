@@ -15,7 +15,7 @@ from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
 from .heat import InterfaceHeat, ThermalDistortion
-from .pressure import PressureSpace
+from .pressure import Basis, PressureSpace, scaled
 from .rigid_motion import RigidHolder
 from .traces import distributed, transpose_product
 
@@ -90,7 +90,7 @@ def influence(
     elastic: Elasticity,
     pairing: Pairing,
     trace: sp.csr_matrix,
-    basis: np.ndarray,
+    basis: Basis,
     thermal_loads: Sequence[PETSc.Mat] = (),
 ) -> Influence:
     """Compute the elastic response to every pressure function. Every rank calls.
@@ -104,13 +104,13 @@ def influence(
     pairing : Pairing
     trace : csr_matrix, shape (n_owned, n)
         Transposed gap trace Bᵀ.
-    basis : ndarray, shape (n, m)
+    basis : ndarray or csr_array, shape (n, m)
         Ψ, from `pressure.pressure_basis`.
     thermal_loads : sequence of petsc4py.PETSc.Mat
         Matrices G of nodal forces per nodal rise, from `Elasticity.thermal_load`.
     """
     dim = elastic.bodies.mesh.geometry.dim
-    weighted = pairing.weights[:, None] * basis
+    weighted = scaled(pairing.weights, basis)
     # only nodes of cells at the contact are loaded: 2 % of the rows
     loads = (trace @ sp.csr_matrix(weighted)).tocsc()
     nodes = np.unique(np.flatnonzero(np.diff(trace.indptr)) // dim)
@@ -144,7 +144,7 @@ def condense(
     pairing: Pairing,
     trace: sp.csr_matrix,
     traction: sp.csr_matrix,
-    basis: np.ndarray,
+    basis: Basis,
     holder: RigidHolder,
 ) -> CondensedContact:
     """Condense elasticity to the pressure space; parameters as in `influence` and `Influence`.
@@ -157,7 +157,7 @@ def condense(
 def condense_heat(
     conduction: Conduction,
     weights: np.ndarray,
-    basis: np.ndarray,
+    basis: Basis,
     traces: tuple[sp.csr_matrix, sp.csr_matrix],
     shift: float,
     partition: float | np.ndarray,

@@ -15,6 +15,7 @@ import scipy.sparse as sp
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
 from ...serialise import serialisable
+from .pressure import Basis, dense
 
 _REGULARITY = 1e-12
 """Regularisation of an infinite resistance, relative to that of the bodies: keeps heat flux
@@ -69,7 +70,7 @@ class InterfaceHeat:
     ----------
     weights : ndarray, shape (n,)
         Areas of the points [m²].
-    basis : ndarray, shape (n, m)
+    basis : ndarray or csr_array, shape (n, m)
         Basis Ψ of the exchanged heat in perfect contact.
     traces : tuple of csr_matrix, shape (n_owned, n)
         Transposed trace Eᵀ of each face.
@@ -83,7 +84,7 @@ class InterfaceHeat:
     """
 
     weights: np.ndarray
-    basis: np.ndarray
+    basis: Basis
     traces: tuple[sp.csr_matrix, sp.csr_matrix]
     shift: float
     response: tuple[np.ndarray, np.ndarray]
@@ -117,9 +118,10 @@ class InterfaceHeat:
         direct = np.minimum(conductance, limit)
         passing_fraction, blocked_fraction = _parts(limit, conductance - direct)
         resistance = blocked_fraction * (passing_fraction + _REGULARITY * blocked_fraction) / limit
-        crossing = passing_fraction[:, None] * self.basis
+        basis = dense(self.basis)
+        crossing = passing_fraction[:, None] * basis
         jump = crossing.T * self.weights
-        resisted = (self.basis.T * (self.weights * resistance)) @ self.basis
+        resisted = (basis.T * (self.weights * resistance)) @ basis
         sizes = np.sqrt(np.diag(resisted) + np.einsum("in,nm,mi->i", jump, Θ1 + Θ2, crossing))
         crossing, jump = crossing / sizes, jump / sizes[:, None]
         identity, count = np.eye(n), len(sizes)

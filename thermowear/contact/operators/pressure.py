@@ -8,14 +8,17 @@ give a pressure without tension, and each weak gap is a mean of the gap with non
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
+import scipy.sparse as sp
 from scipy.special import comb, factorial
 
 from ...lagrange import lattice
 from ..search.face import Surface
 from ..search.pairing import Pairing
 
+Basis: TypeAlias = "np.ndarray | sp.csr_array"
 _ZERO_PRESSURE = 1e-9  # of the largest pressure
 _FIT_FRACTION = 0.8  # fraction of half a zone used to fit its edge
 _DEGREE = 2
@@ -28,14 +31,14 @@ class PressureSpace:
 
     Attributes
     ----------
-    basis : ndarray, shape (n, m)
-        Basis Ψ.
-    weighted : ndarray, shape (n, m)
+    basis : ndarray or csr_array, shape (n, m)
+        Basis Ψ; sparse on a surface.
+    weighted : ndarray or csr_array, shape (n, m)
         ``diag(w) Ψ``.
     """
 
-    basis: np.ndarray
-    weighted: np.ndarray
+    basis: Basis
+    weighted: Basis
 
     def weak(self, values: np.ndarray) -> np.ndarray:
         """Weighted means ``Ψᵀ w v`` of values at the points, shape (m,)."""
@@ -43,10 +46,27 @@ class PressureSpace:
 
     def projected(self, values: np.ndarray) -> np.ndarray:
         """Coefficients of the L² projection of values at the points, by columns."""
-        return np.linalg.solve(self.weighted.T @ self.basis, self.weighted.T @ values)
+        return np.linalg.solve(self.mass, self.weighted.T @ values)
+
+    @property
+    def mass(self) -> np.ndarray:
+        """Matrix ``Ψᵀ w Ψ``, shape (m, m)."""
+        return dense(self.weighted.T @ self.basis)
 
 
-def pressure_basis(pairing: Pairing, degree: int) -> np.ndarray:
+def scaled(factors: np.ndarray, basis: Basis) -> Basis:
+    """Product ``diag(f) Ψ`` for factors at the points, shape (n,)."""
+    if isinstance(basis, np.ndarray):
+        return factors[:, None] * basis
+    return (sp.diags_array(factors) @ basis).tocsr()
+
+
+def dense(matrix: Basis) -> np.ndarray:
+    """Dense copy of a sparse matrix; others as they are."""
+    return matrix if isinstance(matrix, np.ndarray) else matrix.toarray()
+
+
+def pressure_basis(pairing: Pairing, degree: int) -> Basis:
     """Values Ψ of the basis functions at the contact points.
 
     Parameters
@@ -57,16 +77,20 @@ def pressure_basis(pairing: Pairing, degree: int) -> np.ndarray:
 
     Returns
     -------
-    ndarray, shape (n_points, n_functions)
+    ndarray or csr_array, shape (n_points, n_functions)
         Functions without contact points in their support are omitted.
     """
     side = pairing.sides[0]
     t = side.t.reshape(len(side.facet), -1)
     values = _on_triangles(degree, t) if side.face.kind == "triangle" else _on_products(degree, t)
     numbers = side.face.numbers(degree)
-    basis = np.zeros((len(side.facet), numbers.max() + 1))
-    np.put_along_axis(basis, numbers[side.facet], values, axis=1)
-    return basis[:, pairing.weights @ basis > 0.0]
+    starts = np.arange(len(values) + 1) * values.shape[1]
+    shape = len(values), numbers.max() + 1
+    entries = values.ravel(), numbers[side.facet].ravel(), starts
+    basis = sp.csr_array(entries, shape=shape)
+    basis.eliminate_zeros()
+    basis = basis[:, pairing.weights @ basis > 0.0]
+    return basis if isinstance(side.face, Surface) else basis.toarray()
 
 
 def _on_products(degree: int, t: np.ndarray) -> np.ndarray:
@@ -95,7 +119,7 @@ def _bernstein(degree: int, t: np.ndarray) -> np.ndarray:
     return comb(degree, k) * t[:, None] ** k * (1 - t[:, None]) ** (degree - k)
 
 
-def unresolved_gap(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basis: np.ndarray):
+def unresolved_gap(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basis: Basis):
     """Gap component orthogonal to the pressure space, on fully closed facets.
 
     Weak contact closes the mean of the gap with each basis function, not the gap at each point.
@@ -108,7 +132,7 @@ def unresolved_gap(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basi
         Gap at the contact points [m].
     pressing : ndarray of bool, shape (n,)
     pairing : Pairing
-    basis : ndarray, shape (n, m)
+    basis : ndarray or csr_array, shape (n, m)
         Ψ, see `pressure_basis`.
 
     Returns
@@ -118,10 +142,12 @@ def unresolved_gap(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basi
     """
     facet = pairing.sides[0].facet
     closed = ~np.isin(facet, facet[~pressing])
-    on_closed, root = basis[closed], np.sqrt(pairing.weights[closed])
-    coefficients = np.linalg.lstsq(root[:, None] * on_closed, root * gap[closed], rcond=None)[0]
+    used = basis[closed].sum(axis=0) > 0.0
+    on_closed = basis[closed][:, used]
+    space = PressureSpace(on_closed, scaled(pairing.weights[closed], on_closed))
     result = np.zeros_like(gap)
-    result[closed] = gap[closed] - on_closed @ coefficients
+    if closed.any():
+        result[closed] = gap[closed] - on_closed @ space.projected(gap[closed])
     return result
 
 

@@ -28,7 +28,7 @@ import scipy.sparse as sp
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
-from .pressure import PressureSpace
+from .pressure import PressureSpace, scaled
 from .traces import vector_trace
 
 
@@ -91,7 +91,7 @@ def frictional_contact(
     weights : ndarray, shape (n,)
         Area of each point [m²].
     """
-    weighted = weights[:, None] * basis
+    weighted = scaled(weights, basis)
     compliance = np.concatenate([weighted.T @ component for component in response])
     modes = np.concatenate([weighted.T @ component for component in rigid])
     compliance = (compliance + compliance.T) / 2
@@ -132,7 +132,7 @@ def condense_tangential(
     ComputationError
         If the elastic problem cannot be solved.
     """
-    weighted = pairing.weights[:, None] * basis
+    weighted = scaled(pairing.weights, basis)
     directions = [pairing.normals, *-tangents(pairing.normals)]
     traces = [vector_trace(elastic.space, pairing, direction) for direction in directions]
     sparse = sp.csr_matrix(weighted)

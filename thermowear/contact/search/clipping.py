@@ -164,13 +164,17 @@ def _outlines(face: Surface) -> tuple[np.ndarray, ...]:
 
 def _opposite_within(face_1: Surface, facet: np.ndarray, points, normals, softness) -> np.ndarray:
     """Parameters, on facets extended beyond their edges, opposite to points, shape (n, 2)."""
-    start = _on_extended(face_1, points, facet, face_1.flattened.parameters(facet, points))
+    start = _on_extended(face_1, points, facet, None)
     return opposite_parameters(points, normals, softness, face_1, *start, _on_extended)[1]
 
 
-def _on_extended(face: Surface, points, facet: np.ndarray, t) -> tuple[np.ndarray, np.ndarray]:
-    """Closest points on given facets extended beyond their edges, from parameters nearby."""
-    return facet, within(face, points, facet, t, bounds=(-np.inf, np.inf))
+def _on_extended(face: Surface, points, facet: np.ndarray, _) -> tuple[np.ndarray, np.ndarray]:
+    """Closest points on given facets extended beyond their edges.
+
+    Always from their flat approximation: far out a curved facet may be closest at other places.
+    """
+    start = face.flattened.parameters(facet, points)
+    return facet, within(face, points, facet, start, bounds=(-np.inf, np.inf))
 
 
 def _heights(kind: str, t: np.ndarray) -> np.ndarray:

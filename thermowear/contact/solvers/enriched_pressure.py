@@ -14,7 +14,7 @@ import numpy as np
 
 from ...parallel import sum_over_ranks
 from ..operators.condensation import Influence
-from ..operators.pressure import pressure_basis
+from ..operators.pressure import dense, pressure_basis
 from ..operators.rigid_motion import RigidHolder
 from ..search.pairing import Pairing
 from .signorini import solve_contact
@@ -56,7 +56,7 @@ def enriched_pressure(
     ComputationError
         If there is no solution.
     """
-    basis, weights = pressure_basis(pairing, degree + 1), pairing.weights
+    basis, weights = dense(pressure_basis(pairing, degree + 1)), pairing.weights
     weighted = weights[:, None] * basis
     compliance = _compliance(pairing, influence, basis, elastic_opening)
     compliance = compliance + weighted.T @ (local[:, None] * basis)
@@ -76,7 +76,7 @@ def _compliance(
     pairing: Pairing, influence: Influence, basis: np.ndarray, elastic_opening
 ) -> np.ndarray:
     """Compliance of the enriched basis: elastic response to Ψ, local for the details."""
-    weighted = influence.weighted
+    weighted = dense(influence.weighted)
     opened = influence.trace[influence.touching].T @ influence.near
     opened = sum_over_ranks(influence.comm, opened)
     known = weighted.T @ opened

@@ -24,7 +24,7 @@ from functools import cached_property
 import numpy as np
 
 from ..operators.condensation import CondensedContact
-from ..operators.pressure import PressureSpace
+from ..operators.pressure import Basis, PressureSpace, dense, scaled
 from ..operators.rigid_motion import RigidHolder
 
 _ZERO = 1e-12
@@ -35,7 +35,7 @@ _EDGE_ADVANCE = 2
 """Number of facets that the edge may advance in a step, see `has_passed`."""
 
 
-def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np.ndarray:
+def edge_points(facet: np.ndarray, basis: Basis, reached: np.ndarray) -> np.ndarray:
     """Contact points of the facets at the edge of the worn zone, or within its reach in a step.
 
     These facets have unworn points, and are at most `_EDGE_ADVANCE` facets away from facets with
@@ -45,7 +45,7 @@ def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np
     ----------
     facet : ndarray of int, shape (n,)
         Facets of the points.
-    basis : ndarray, shape (n, m)
+    basis : ndarray or csr_array, shape (n, m)
         Basis Ψ.
     reached : ndarray of bool, shape (n,)
         Worn points.
@@ -56,14 +56,12 @@ def edge_points(facet: np.ndarray, basis: np.ndarray, reached: np.ndarray) -> np
     """
     near = np.isin(facet, facet[reached])
     for _ in range(_EDGE_ADVANCE):
-        shared = np.any(basis[near] > 0.0, axis=0)
-        near = np.isin(facet, facet[np.any(basis[:, shared] > 0.0, axis=1)])
+        shared = basis[near].sum(axis=0) > 0.0
+        near = np.isin(facet, facet[basis[:, shared].sum(axis=1) > 0.0])
     return near & np.isin(facet, facet[~reached])
 
 
-def has_passed(
-    basis: np.ndarray, points: np.ndarray, before: np.ndarray, after: np.ndarray
-) -> bool:
+def has_passed(basis: Basis, points: np.ndarray, before: np.ndarray, after: np.ndarray) -> bool:
     """Test whether the edge of the worn zone has passed the edge points.
 
     True if edge points and other points that share a basis function with them were reached in the
@@ -71,7 +69,7 @@ def has_passed(
 
     Parameters
     ----------
-    basis : ndarray, shape (n, m)
+    basis : ndarray or csr_array, shape (n, m)
         Basis Ψ.
     points : ndarray of bool, shape (n,)
         Result of `edge_points`.
@@ -79,19 +77,19 @@ def has_passed(
         Worn points before and after the step.
     """
     new = after & ~before
-    shared = np.any(basis[new & points] > 0.0, axis=0)
-    return bool(np.any(basis[np.ix_(new & ~points, shared)] > 0.0))
+    shared = basis[new & points].sum(axis=0) > 0.0
+    return bool(basis[new & ~points][:, shared].sum() > 0.0)
 
 
 def rough_points(
-    facet: np.ndarray, basis: np.ndarray, weights: np.ndarray, pressure: np.ndarray
+    facet: np.ndarray, basis: Basis, weights: np.ndarray, pressure: np.ndarray
 ) -> np.ndarray:
     """Contact points of the facets where a pressure is outside of the pressure space.
 
     Parameters
     ----------
     facet : ndarray of int, shape (n,)
-    basis : ndarray, shape (n, m)
+    basis : ndarray or csr_array, shape (n, m)
         Basis Ψ.
     weights : ndarray, shape (n,) [m²]
     pressure : ndarray, shape (n,) [Pa]
@@ -100,8 +98,8 @@ def rough_points(
     -------
     ndarray of bool, shape (n,)
     """
-    weighted = weights[:, None] * basis
-    left = pressure - basis @ np.linalg.solve(weighted.T @ basis, weighted.T @ pressure)
+    space = PressureSpace(basis, scaled(weights, basis))
+    left = pressure - basis @ space.projected(pressure)
     return np.isin(facet, facet[np.abs(left) > _SMOOTH * pressure.max()])
 
 
@@ -196,10 +194,10 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     cut = (share > _ZERO) & (share < 1.0 - _ZERO)
     whole = np.flatnonzero(share >= 1.0 - _ZERO)
     single = np.eye(len(points))[:, points]
-    split = np.hstack([np.where(points[:, None], 0.0, contact.basis[:, cut]), single])
+    split = np.hstack([np.where(points[:, None], 0.0, dense(contact.basis[:, cut])), single])
     projection = contact.projected(split)
     left = split - contact.basis @ projection
-    basis = np.hstack([contact.basis[:, whole], split])
+    basis = np.hstack([dense(contact.basis[:, whole]), split])
     weighted = weights[:, None] * basis
     own = np.zeros((basis.shape[1],) * 2)
     yielding = (weights * _shortest_compliance(contact))[:, None] * left
@@ -220,6 +218,6 @@ def _shortest_compliance(contact: CondensedContact) -> np.ndarray:
 
     Estimated by the diagonal of the stiffness A⁻¹, in which the soft long waves count little.
     """
-    area = np.einsum("nj,nj->j", contact.weighted, contact.basis)
+    area = (contact.weighted * contact.basis).sum(axis=0)
     stiffness = area * np.diag(np.linalg.inv(contact.compliance))
     return contact.basis @ (1.0 / np.abs(stiffness))

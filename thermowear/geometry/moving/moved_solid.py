@@ -150,9 +150,8 @@ class MovableSolid(MovableFace):
         facets = facets[np.any(outlined[facets] != 0.0, axis=(1, 2))]
         points = self._mesh.points[facets]
         points = points - points.reshape(-1, 3).mean(axis=0)
-        before, after = (
-            _enclosed(self._mesh.order, p) for p in (points, points + outlined[facets])
-        )
+        kind, order = self._mesh.facet_type, self._mesh.order
+        before, after = (_enclosed(kind, order, p) for p in (points, points + outlined[facets]))
         return (before - after) * float(factor(np.zeros((1, 3)))[0])
 
     @cached_property

@@ -18,6 +18,7 @@ from ...bulk.mechanics.elasticity import fixed_values
 from ...bulk.mechanics.enriched import EnrichedProblem
 from ...bulk.mechanics.surplus import surplus_space
 from ...contact.operators.heat import BaselineResponse, InterfaceHeat
+from ...contact.operators.pressure import dense, scaled
 from ...contact.operators.traces import gap_trace, value_trace, vector_trace
 from ...model.conditions import Heat
 from ...parallel import sum_over_ranks
@@ -122,11 +123,9 @@ def temperature_change(
     change = problem.correction(problem.residual(before, np.asarray(loads)))
     uncoupled = np.array([sum_over_ranks(system.comm, trace.T @ change) for trace in traces])
     # the nodal space cannot represent the response to a flux that levels finer details
-    weighted = face.weights[:, None] * face.basis
-    resolved = (
-        face.basis
-        @ np.linalg.lstsq(weighted.T @ face.basis, weighted.T @ uncoupled.T, rcond=None)[0]
-    )
+    weighted = scaled(face.weights, face.basis)
+    mass = dense(weighted.T @ face.basis)
+    resolved = face.basis @ np.linalg.lstsq(mass, weighted.T @ uncoupled.T, rcond=None)[0]
     exchange = face.exchange(conductance)
     none = np.zeros(len(face.weights))
     coupled = exchange.state(none, BaselineResponse((resolved[:, 0], resolved[:, 1])))

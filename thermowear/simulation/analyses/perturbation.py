@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ...contact.operators.pressure import dense, scaled
 from ...errors import CaseError
 from ...laws.stability import (
     LoadFree,
@@ -127,7 +128,7 @@ class PerturbedContact:
     def _elastic(self) -> np.ndarray:
         """Compliance A of the bodies and of the soft layer between the faces."""
         contact = self._system.contact
-        return contact.compliance + self._system.softness * contact.weighted.T @ contact.basis
+        return contact.compliance + self._system.softness * contact.mass
 
     @cached_property
     def _thermal(self) -> np.ndarray:
@@ -135,13 +136,13 @@ class PerturbedContact:
         face, conductance = self._thermal_bodies.face, self._conditions.conductance
         bodies = HeatOperators(self._system, self._thermal_bodies.conduction, face)
         per_heat = bodies.distortion.per_friction_heat(face.exchange(conductance))
-        return per_heat @ (self._conditions.heating[:, None] * self._system.basis)
+        return per_heat @ scaled(self._conditions.heating, self._system.basis)
 
     @cached_property
     def _space(self) -> LoadFree:
         """All load-free perturbations of the contact set."""
         contact = self._system.contact
-        coefficients = np.linalg.lstsq(contact.basis, self._pressure, rcond=None)[0]
+        coefficients = np.linalg.lstsq(dense(contact.basis), self._pressure, rcond=None)[0]
         touching = coefficients > _PRESSING * coefficients.max()
         if (self._pressure > 0).all():
             touching[:] = True
@@ -153,8 +154,7 @@ class PerturbedContact:
     def _reduced(self) -> LoadFree:
         """Basis of the growing perturbations."""
         contact = self._system.contact
-        depths = contact.weighted.T @ contact.basis
-        return leading(self._elastic, self._thermal, depths, self._space, _REDUCED)
+        return leading(self._elastic, self._thermal, contact.mass, self._space, _REDUCED)
 
     def _wear(self, factor: float) -> np.ndarray:
         """Wear rate per perturbation at a factor of the speed, in the reduced basis."""

@@ -115,7 +115,7 @@ def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
     contacts = [system.contact for system in systems]
     compliances, gaps, gaps_per_depth = [], [], []
     for position, system, contact in zip(stroke, systems, contacts, strict=True):
-        mean = contact.weighted.T @ contact.basis
+        mean = contact.mass
         passed = contact.weighted.T @ grid.hats(system.pairing, position.length)
         compliances.append(contact.compliance + system.softness * mean)
         gaps.append(contact.weak(system.gap - system.holder.imposed))

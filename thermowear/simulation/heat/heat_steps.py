@@ -19,6 +19,7 @@ from ...contact.operators.heat import (
     ThermalState,
     baseline_response,
 )
+from ...contact.operators.pressure import scaled
 from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions
@@ -149,7 +150,7 @@ class HeatOperators:
         key, last = heating.tobytes(), self._compliance
         if last is None or last[0] is not exchange or last[1] != key:
             per_heat = self.distortion.per_friction_heat(exchange)
-            last = self._compliance = exchange, key, per_heat @ (heating[:, None] * basis)
+            last = self._compliance = exchange, key, per_heat @ scaled(heating, basis)
         return last[2]
 
 

@@ -89,7 +89,7 @@ class CondensedMethod:
         an implicit step of wear of rigid bodies.
         """
         contact, load = self._with_friction(conditions.friction), conditions.load
-        coefficients = np.linalg.lstsq(contact.basis, pressure, rcond=None)[0]
+        coefficients = contact.projected(pressure)
         active = np.ones(len(coefficients), dtype=bool)
         no_motion = np.zeros(contact.modes.shape[1])
         start = ContactSolution(
@@ -139,7 +139,7 @@ class CondensedMethod:
         """Weak gaps (k, k) per coefficient by a local compliance [m/Pa]; the last are cached."""
         last = self._last_opening
         if last is None or last[0] is not space or not np.array_equal(last[1], slope):
-            opening = space.weighted.T @ (slope[:, None] * space.basis)
+            opening = space.weighted.T @ (space.basis.T * slope).T
             last = self._last_opening = space, slope, opening
         return last[2]
 

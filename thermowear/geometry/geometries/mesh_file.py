@@ -95,7 +95,9 @@ class MeshFile(HalvableGeometry):
     fixed_name: str = Field(alias="fixed")
     symmetry_names: tuple[str, ...] = Field(alias="symmetry", default=())
     roller_names: tuple[str, ...] = Field(alias="rollers", default=())
-    rotates_about: tuple[Coordinate, Coordinate] | None = Field(alias="rotation_center", default=None)
+    rotates_about: tuple[Coordinate, Coordinate] | None = Field(
+        alias="rotation_center", default=None
+    )
     surface_names: dict[str, str] = Field(alias="surfaces", default={})
     contact_area_given: Area | None = Field(alias="contact_area", default=None)
     _with_material: dict[str, tuple[str, ...]] = PrivateAttr(default={})

@@ -50,7 +50,9 @@ class Named:
         blocks = [b for b in contents.blocks if b.dim == contents.dim and self._may_own(b)]
         for name in self.sets:
             if not any(len(block.sets.get(name, ())) for block in blocks):
-                known = ", ".join(sorted({name for block in blocks for name in block.sets})) or "none"
+                known = (
+                    ", ".join(sorted({name for block in blocks for name in block.sets})) or "none"
+                )
                 raise CaseError(
                     f"{self.key}: the file has no cells named {name!r}; one of: {known}"
                 )
@@ -200,5 +202,3 @@ def _check_lines(
             f"{surface.key}: {count} of {sum(map(len, wanted))} lines of {surface.in_file!r} are "
             "not on the boundary of any body"
         )
-
-

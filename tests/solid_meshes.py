@@ -46,7 +46,7 @@ def write_blocks(path, order=1, hexahedra=False, glued=False, size=8.0, **option
         surfaces = model.getEntities(2)
         groups = {"PAD_BACK": [], "DISK_BOTTOM": [], "PAD_FACE": [], "DISK_FACE": [], "SIDES": []}
         for _, tag in surfaces:
-            x, y, z = model.occ.getCenterOfMass(2, tag)
+            _, _, z = model.occ.getCenterOfMass(2, tag)
             above, _ = model.getAdjacencies(2, tag)
             level = {PAD[2]: "PAD_BACK", -DISK[2]: "DISK_BOTTOM"}.get(round(z, 9), "SIDES")
             if abs(z) < 1e-9:

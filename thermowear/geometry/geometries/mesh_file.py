@@ -24,6 +24,7 @@ from ..reading.assembly import Named, assemble, divided
 from ..reading.file_contents import read_contents
 from ..reading.mesh_checks import check_mesh
 from ..reading.pair_checks import check_pair
+from ..reading.solid_surfaces import check_solid_mesh
 
 _KEYS = {
     "body_names": "bodies",
@@ -218,9 +219,11 @@ class MeshFile(HalvableGeometry):
         return divided(tagged, contents, bodies, sets)
 
     def check(self, mesh, case):
-        if not self._in_space:
+        if self._in_space:
+            check_solid_mesh(mesh, self)
+        else:
             check_mesh(mesh, self, case.model)
-            check_pair(mesh, case)
+        check_pair(mesh, case)
 
     def _purposes(self) -> dict[str, Named]:
         """All surfaces by their names in the case."""

@@ -149,6 +149,16 @@ class Model:
         return own | {part: m for body in self.bodies for part, m in body.materials.items()}
 
     @property
+    def sector_of_ring(self) -> bool:
+        """True if planes of symmetry cut a sector from bodies that rotate in space.
+
+        The shear traction of friction is antisymmetric about these planes. It twists the whole ring
+        without changing gap or pressure, and is left out, as in axisymmetric models.
+        """
+        cut = self.symmetry or any(body.rollers for body in self.bodies)
+        return bool(cut) and self.kinematics == "3d" and self.motion.center is not None
+
+    @property
     def pressure_degree(self) -> int:
         """Degree of the pressure space, by default one below that of the displacement."""
         own, degree = self.interface.pressure_degree, self.discretisation.degree

@@ -16,7 +16,7 @@ from pydantic import BeforeValidator, SerializeAsAny, ValidationInfo, model_vali
 from pydantic.fields import FieldInfo
 
 from ...errors import quoted
-from ..values.section import KeyFault, Section, UserFile
+from ..values.section import MODEL, KeyFault, Section, UserFile
 from ..values.units import Length
 
 KNOWN: dict[str, type[Geometry]] = {}
@@ -219,6 +219,11 @@ class Geometry(Section):
         """True if the mesh is refined for the contact zone and moves with it."""
         return type(self).expected_zone is not Geometry.expected_zone
 
+    def rollers_of(self, body: str) -> tuple[str, ...]:
+        """Surfaces of a body on rollers."""
+        held = (self.held, self.fixed)[self.bodies.index(body)]
+        return tuple(s for s in self.rollers if s == held or s.startswith(f"{body}_"))
+
     def contact_area(self) -> float | None:
         """Nominal contact area for a mean pressure; None if there is none [m²]."""
         return None
@@ -299,7 +304,8 @@ def _pick(data: Any, info: ValidationInfo) -> Any:
         raise KeyFault("type", f"missing; one of: {', '.join(known)}")
     if not isinstance(name, str) or name not in known:
         raise KeyFault("type", f"found {quoted(name)}; must be one of: {', '.join(known)}")
-    return known[name].model_validate(data, context=info.context)
+    context = (info.context or {}) | {MODEL: info.data.get("model")}
+    return known[name].model_validate(data, context=context)
 
 
 AnyGeometry = Annotated[SerializeAsAny[Geometry], BeforeValidator(_pick)]

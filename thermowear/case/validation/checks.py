@@ -30,6 +30,12 @@ def check(case: Case) -> None:
     if zone is not None:
         case.geometry.check_zone(zone)
     friction = case.contact.nominal_friction
+    cut = case.model == "3d" and (case.geometry.symmetry or case.geometry.rollers)
+    if cut and case.geometry.rotation_center is not None and friction > 0.0:
+        note(
+            "geometry: planes of symmetry cut a sector from rotating bodies; the shear of friction, "
+            "which twists the whole ring, is left out (its heat and wear are not)"
+        )
     for name, law in case.wear.items():
         if law.rate is None and "per" not in law.model_fields_set and friction > 0.0:
             note(
@@ -178,7 +184,14 @@ def _symmetry(case: Case) -> Iterator[Fault]:
     geometry = case.geometry
     slides = case.motion is not None and not geometry.slides_across
     drags = slides and case.contact.nominal_friction > 0
-    if drags and case.model != "axisymmetric" and geometry.symmetry:
+    if case.model == "3d":
+        if drags and geometry.symmetry and geometry.rotation_center is None:
+            yield (
+                "geometry.symmetry",
+                "sliding friction along x is not symmetric about a plane x = const; planes "
+                "y = const (rollers) are possible",
+            )
+    elif drags and case.model != "axisymmetric" and geometry.symmetry:
         yield "geometry.half", "sliding friction is not symmetric; mesh the whole section"
 
 

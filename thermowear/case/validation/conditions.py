@@ -16,6 +16,8 @@ _FREE = {
     "3d": ("x", "y", "z", "rotation-x", "rotation-y"),
 }
 """Free rigid motions of the holder by model."""
+_MIRRORED = {"symmetry": ("z", "y", "rotation-x"), "rollers": ("z", "x", "rotation-y")}
+"""Free motions in space by the planes of symmetry."""
 _NEEDS_FREE = {
     "approach": ("z", "moves the holder along the load direction; add"),
     "tangential_force": ("x", "requires a holder that is free along x: add"),
@@ -48,7 +50,9 @@ def holder(case: Case) -> Iterator[Fault]:
         yield "holder.pivot", f"has {len(pivot)} coordinates; {case.model} needs {dim}"
     if point is not None and len(point) != dim - 1:
         yield "load.point", f"has {len(point)} coordinates; {case.model} needs {dim - 1}"
-    if case.geometry.symmetry and free != ("z",):
+    if case.model == "3d":
+        yield from _mirrored(case)
+    elif case.geometry.symmetry and free != ("z",):
         key = "holder.free" if case.geometry.slides_across else "geometry.half"
         yield key, 'a symmetric model needs holder.free = ["z"]'
     if case.analysis.type == "fretting" and free != ("z",):
@@ -56,6 +60,18 @@ def holder(case: Case) -> Iterator[Fault]:
             "holder",
             "is not supported in a fretting analysis: load.history prescribes its motion",
         )
+
+
+def _mirrored(case: Case) -> Iterator[Fault]:
+    """Free motions of the holder that planes of symmetry x or y = const permit."""
+    for key, allowed in _MIRRORED.items():
+        wrong = sorted(set(case.holder.free) - set(allowed))
+        if getattr(case.geometry, key) and wrong:
+            yield (
+                "holder.free",
+                f"{wrong[0]!r} contradicts the planes of geometry.{key}, which permit "
+                f"{', '.join(allowed)}",
+            )
 
 
 def load(case: Case) -> Iterator[Fault]:
@@ -109,6 +125,8 @@ def surface_pressure(case: Case) -> Iterator[Fault]:
     refused |= dict.fromkeys(
         geometry.symmetry, "lies on a plane of symmetry, which cannot be loaded"
     )
+    if case.model == "3d":
+        refused |= dict.fromkeys(geometry.rollers, "is on rollers, which cannot be loaded")
     refused[geometry.fixed] = "is fixed; a pressure on it has no effect"
     for name in load.pressure:
         if name in refused:

@@ -20,6 +20,8 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Switch = Annotated[bool, Field(strict=True)]
 FOLDER = "folder"
 """Key of the case file's folder in the validation context."""
+MODEL = "model"
+"""Key of the model of the case in the validation context of its geometry."""
 Fault = tuple[str, str]
 """Path of the key at fault, and the message."""
 

@@ -7,16 +7,24 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import BeforeValidator, Field, PrivateAttr, model_serializer, model_validator
+from pydantic import (
+    BeforeValidator,
+    Field,
+    PrivateAttr,
+    ValidationInfo,
+    model_serializer,
+    model_validator,
+)
 
 from ...case.tables.geometry import keyed
 from ...case.tables.plane_geometry import HalvableGeometry
-from ...case.values.section import KeyFault, UserFile
-from ...case.values.units import Area, Length
+from ...case.values.section import MODEL, KeyFault, UserFile
+from ...case.values.units import Area, Coordinate, Length
 from ..reading.assembly import Named, assemble, divided
 from ..reading.file_contents import read_contents
 from ..reading.mesh_checks import check_mesh
 from ..reading.pair_checks import check_pair
+from ..reading.solid_surfaces import check_solid_mesh
 
 _KEYS = {
     "body_names": "bodies",
@@ -24,6 +32,9 @@ _KEYS = {
     "held_name": "held",
     "fixed_name": "fixed",
     "symmetry_names": "symmetry",
+    "roller_names": "rollers",
+    "rotates_about": "rotation_center",
+    "contact_area_given": "contact_area",
     "surface_names": "surfaces",
 }
 """Attributes whose keys are named like properties of every geometry."""
@@ -59,8 +70,12 @@ class MeshFile(HalvableGeometry):
         Key ``contact``: contact faces of body 1 and body 2.
     held_name, fixed_name : str
         Keys ``held`` and ``fixed``: surface of body 1 on the holder, fixed surface of body 2.
-    symmetry_names : tuple of str
-        Key ``symmetry``: surfaces on a plane of symmetry x = const.
+    symmetry_names, roller_names : tuple of str
+        Keys ``symmetry`` and ``rollers``: surfaces on planes of symmetry x = const, and y = const
+        in space.
+    rotates_about : tuple of float or None
+        Key ``rotation_center``: x and y of the axis along z that body 2 rotates about in space; by
+        default the bodies slide along x [m].
     surface_names : dict of str to str
         Key ``surfaces``: names in the file of further surfaces, or of those above, by their names
         in the case.
@@ -69,7 +84,7 @@ class MeshFile(HalvableGeometry):
     """
 
     name = "file"
-    models = ("axisymmetric", "plane-strain", "plane-stress")
+    models = ("axisymmetric", "plane-strain", "plane-stress", "3d")
     from_file = True
 
     type: Literal["file"]
@@ -80,20 +95,26 @@ class MeshFile(HalvableGeometry):
     held_name: str = Field(alias="held")
     fixed_name: str = Field(alias="fixed")
     symmetry_names: tuple[str, ...] = Field(alias="symmetry", default=())
+    roller_names: tuple[str, ...] = Field(alias="rollers", default=())
+    rotates_about: tuple[Coordinate, Coordinate] | None = Field(
+        alias="rotation_center", default=None
+    )
     surface_names: dict[str, str] = Field(alias="surfaces", default={})
     contact_area_given: Area | None = Field(alias="contact_area", default=None)
     _with_material: dict[str, tuple[str, ...]] = PrivateAttr(default={})
+    _in_space: bool = PrivateAttr(default=False)
 
     @model_validator(mode="after")
-    def _complete(self):
+    def _complete(self, info: ValidationInfo):
+        self._in_space = (info.context or {}).get(MODEL) == "3d"
         if len(self.body_names) != 2:
             raise KeyFault(
                 "bodies", f"needs two bodies, the held one first; found {len(self.body_names)}"
             )
-        if self.half and not self.symmetry:
-            raise KeyFault("half", "needs the surfaces on the plane of symmetry: symmetry = [...]")
-        if self.symmetry and not self.half:
-            raise KeyFault("symmetry", "requires a half model; add half = true")
+        if self._in_space:
+            self._check_space()
+        else:
+            self._check_plane()
         roles = {"contact": self.contact, "held": (self.held,), "fixed": (self.fixed,)}
         seen: set[str] = set()
         for key, names in roles.items():
@@ -103,15 +124,50 @@ class MeshFile(HalvableGeometry):
                 seen.add(name)
         return self
 
+    def _check_plane(self) -> None:
+        if self.half and not self.symmetry:
+            raise KeyFault("half", "needs the surfaces on the plane of symmetry: symmetry = [...]")
+        if self.symmetry and not self.half:
+            raise KeyFault("symmetry", "requires a half model; add half = true")
+        for key, value in {"rollers": self.rollers, "rotation_center": self.rotates_about}.items():
+            if value:
+                raise KeyFault(key, "requires a 3d model")
+
+    def _check_space(self) -> None:
+        if self.half:
+            raise KeyFault(
+                "half",
+                "requires a plane model; in space list the surfaces on planes of symmetry: "
+                "symmetry = [...] (x = const), rollers = [...] (y = const)",
+            )
+        if "thickness" in self.model_fields_set:
+            raise KeyFault("thickness", "requires a plane model")
+
     @model_serializer(mode="wrap")
     def _by_keys(self, handler) -> dict[str, Any]:
-        keys = _KEYS | {"contact_area_given": "contact_area"}
-        return {keys.get(name, name): value for name, value in handler(self).items()}
+        plane = ("half", "thickness") if self._in_space else ("rollers", "rotation_center")
+        found = {_KEYS.get(name, name): value for name, value in handler(self).items()}
+        return {name: value for name, value in found.items() if name not in plane}
 
     contact: ClassVar[Any] = keyed(attrgetter("contact_names"))
     held: ClassVar[Any] = keyed(attrgetter("held_name"))
     fixed: ClassVar[Any] = keyed(attrgetter("fixed_name"))
     symmetry: ClassVar[Any] = keyed(attrgetter("symmetry_names"))
+
+    rollers: ClassVar[Any] = keyed(attrgetter("roller_names"))
+    rotation_center: ClassVar[Any] = keyed(attrgetter("rotates_about"))
+
+    @keyed
+    def press_direction(self) -> tuple[float, ...]:
+        return (0.0, 0.0, -1.0) if self._in_space else (0.0, -1.0)
+
+    @keyed
+    def thickness_factor(self) -> float | None:
+        return None if self._in_space else super().thickness_factor
+
+    def rollers_of(self, body: str) -> tuple[str, ...]:
+        """All surfaces on rollers, which may belong to both bodies, for the first one."""
+        return self.rollers if body == self.bodies[0] else ()
 
     @keyed
     def bodies(self) -> tuple[str, ...]:
@@ -151,7 +207,7 @@ class MeshFile(HalvableGeometry):
         return result
 
     def build(self, mesh, zone):
-        contents = read_contents(Path(self.path))
+        contents = read_contents(Path(self.path), 3 if self._in_space else 2)
         contents = replace(contents, points=contents.points * self.length_unit)
         bodies = [Named(b, self.sets_of(b), f"geometry.bodies.{b}") for b in self.bodies]
         tagged = assemble(contents, bodies, list(self._purposes().values()))
@@ -163,7 +219,10 @@ class MeshFile(HalvableGeometry):
         return divided(tagged, contents, bodies, sets)
 
     def check(self, mesh, case):
-        check_mesh(mesh, self, case.model)
+        if self._in_space:
+            check_solid_mesh(mesh, self)
+        else:
+            check_mesh(mesh, self, case.model)
         check_pair(mesh, case)
 
     def _purposes(self) -> dict[str, Named]:
@@ -172,6 +231,7 @@ class MeshFile(HalvableGeometry):
         uses: list[tuple[str, str, int | None]] = [("contact", upper, 0), ("contact", lower, 1)]
         uses += [("held", self.held_name, 0), ("fixed", self.fixed_name, 1)]
         uses += [("symmetry", name, None) for name in self.symmetry_names]
+        uses += [("rollers", name, None) for name in self.roller_names]
         uses += [("surfaces", name, None) for name in self.surface_names]
         result: dict[str, Named] = {}
         for use, name, body in uses:

@@ -108,20 +108,25 @@ def boundary(cell_type: str, order: int, cells: np.ndarray) -> np.ndarray:
     """
     in_space = cell_type in _SPATIAL_FACETS
     local = facet_nodes(cell_type, order) if in_space else edge_nodes(cell_type, order)
-    every = cells[:, local].reshape(-1, local.shape[1])
-    number, count = numbered(every[:, : len(_PLACES[FACETS[cell_type]])])
-    return every[count[number] == 1]
+    corners = local[:, : len(_PLACES[FACETS[cell_type]])]
+    number, count = numbered(cells[:, corners].reshape(-1, corners.shape[1]))
+    cell, facet = np.divmod(np.flatnonzero(count[number] == 1), len(local))
+    return cells[cell[:, None], local[facet]]
 
 
 def numbered(corners: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Number each edge or facet, given by corners (n, n_corners), the same ones alike.
 
-    Shape (n,); also how often each number occurs.
+    Shape (n,), in lexicographic order of the sorted corners; also how often each number occurs.
     """
-    _, number, count = np.unique(
-        np.sort(corners, axis=1), axis=0, return_inverse=True, return_counts=True
-    )
-    return number.ravel(), count
+    ordered = np.sort(corners, axis=1)
+    order = np.lexsort(ordered.T[::-1])
+    ordered = ordered[order]
+    new = np.ones(len(ordered), dtype=bool)
+    new[1:] = np.any(ordered[1:] != ordered[:-1], axis=1)
+    number = np.empty(len(ordered), dtype=np.int64)
+    number[order] = np.cumsum(new) - 1
+    return number, np.bincount(number)
 
 
 def meeting(corners: np.ndarray) -> np.ndarray:

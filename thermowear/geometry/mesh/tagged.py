@@ -113,13 +113,13 @@ def _corner_keys(kind: str, cells: np.ndarray) -> np.ndarray:
 
 def compact(mesh: TaggedMesh) -> TaggedMesh:
     """Mesh without unused points."""
-    used, cells = np.unique(mesh.cells, return_inverse=True)
-    number = np.full(len(mesh.points), -1, dtype=np.int64)
-    number[used] = np.arange(len(used))
+    used = np.zeros(len(mesh.points), dtype=bool)
+    used[mesh.cells] = True
+    number = np.where(used, np.cumsum(used) - 1, -1)
     return replace(
         mesh,
         points=np.ascontiguousarray(mesh.points[used]),
-        cells=cells.reshape(mesh.cells.shape).astype(np.int64),
+        cells=number[mesh.cells],
         facets=number[mesh.facets],
     )
 
@@ -180,8 +180,9 @@ def _grid(cell_type: str, along: int, dim: int) -> np.ndarray:
 
 
 def _determinants(matrices: np.ndarray) -> np.ndarray:
-    """Determinants of small matrices (..., d, d); 2 x 2 ones explicitly, faster than by LAPACK."""
-    if matrices.shape[-1] != 2:
-        return np.linalg.det(matrices)
-    (a, b), (c, d) = np.moveaxis(matrices, (-2, -1), (0, 1))
-    return a * d - b * c
+    """Determinants of small matrices (..., d, d), explicitly: faster than by LAPACK."""
+    if matrices.shape[-1] == 2:
+        (a, b), (c, d) = np.moveaxis(matrices, (-2, -1), (0, 1))
+        return a * d - b * c
+    (a, b, c), (d, e, f), (g, h, i) = np.moveaxis(matrices, (-2, -1), (0, 1))
+    return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g)

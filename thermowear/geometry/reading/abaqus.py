@@ -13,13 +13,29 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .contents import CellBlock, MeshContents, numbering, parsed
+from .contents import VTK_ORDER, CellBlock, MeshContents, numbering, parsed
 
 _PLANE = re.compile(r"(CPS|CPE|CPEG|CAX|M3D|STRI|S|DC2D|DCAX|WARP2D|R3D)(3|4|6|8|9)(?!\d)")
+_SOLID = re.compile(r"(C3D|DC3D|DCC3D)(4|8|10|20|27)(?!\d)")
 _LINE = re.compile(r"(T2D|T3D|B2|B3|SAX|R2D|RAX|DC1D|W2D|W3D)\d*")
-_SIDE = re.compile(r"[Ss][1-4]")
+_SIDE = re.compile(r"S([1-6]|POS|NEG)", re.IGNORECASE)
 _CELLS = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"}
-_CORNERS = {"triangle": 3, "quad": 4}
+_SOLIDS = {4: "tetra", 10: "tetra10", 8: "hexahedron", 20: "hexahedron20", 27: "hexahedron27"}
+_ORDERS = VTK_ORDER | {
+    "hexahedron27": [*VTK_ORDER["hexahedron27"][:20], 21, 23, 26, 24, 25, 22, 20]
+}
+_SIDES = {
+    "triangle": np.array([(0, 1), (1, 2), (2, 0)]),
+    "quad": np.array([(0, 1), (1, 2), (2, 3), (3, 0)]),
+    "tetra": np.array([(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)]),
+    "hexahedron": np.array(
+        [(0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)]
+    ),
+}
+"""Corners of the sides S1, S2, … of elements."""
+_SHELL_FACES = {"triangle": np.array([(0, 1, 2)]), "quad": np.array([(0, 1, 2, 3)])}
+"""Corners of the sides SPOS and SNEG of shells and membranes, which cover cells in space."""
+_FACETS = {2: "line", 3: "triangle", 4: "quad"}
 _LINES = {2: "line", 3: "line3"}
 _REFUSED = {
     "INCLUDE": "includes another file; a mesh must be in one file",
@@ -38,15 +54,15 @@ Member = int | str | tuple[int, int, int] | np.ndarray
 """Member of a set: a number, the name of another set, a range (first, last, step), or numbers."""
 
 
-def read_abaqus(text: str) -> MeshContents:
-    """Read the text of an input file.
+def read_abaqus(text: str, dim: int = 2) -> MeshContents:
+    """Read the text of an input file with bodies of a dimension.
 
     Raises
     ------
     ValueError
         If it is malformed, or has cards that would change the mesh.
     """
-    deck = _Deck()
+    deck = _Deck(dim)
     for keyword, options, lines in _cards(text):
         if keyword in _REFUSED:
             raise ValueError(f"*{keyword} {_REFUSED[keyword]}")
@@ -80,7 +96,8 @@ def _cards(text: str) -> Iterator[tuple[str, dict[str, str], list[str]]]:
 class _Deck:
     """Parser state; numbers are those of the file."""
 
-    def __init__(self) -> None:
+    def __init__(self, dim: int) -> None:
+        self.dim = dim
         self.tags: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
         self.points: list[np.ndarray] = [np.empty((0, 3))]
         self.elements: defaultdict[str, list[tuple[np.ndarray, np.ndarray]]] = defaultdict(list)
@@ -101,6 +118,8 @@ class _Deck:
         kind, words = options.get("TYPE", "").upper(), len(lines[0].split(",")) if lines else 0
         if plane := _PLANE.match(kind):
             count, names = int(plane[2]), _CELLS
+        elif self.dim == 3 and (solid := _SOLID.match(kind)):
+            count, names = int(solid[2]), _SOLIDS
         elif _LINE.match(kind) and words - 1 in _LINES:
             count, names = words - 1, _LINES
         else:
@@ -109,7 +128,8 @@ class _Deck:
         if len(flat) % (count + 1):
             raise ValueError(f"an element of type {kind} does not have {count} nodes")
         table = flat.reshape(-1, count + 1)
-        self.elements[names[count]].append((table[:, 0], table[:, 1:]))
+        order = 1 + np.array(_ORDERS.get(names[count], range(count)))
+        self.elements[names[count]].append((table[:, 0], table[:, order]))
         if "ELSET" in options:
             self.element_sets[options["ELSET"]].append(table[:, 0])
 
@@ -125,7 +145,7 @@ class _Deck:
         if kind == "NODE":
             self.node_sets[name] += [_member(row[0]) for row in rows if row[0]]
         elif kind == "ELEMENT" and all(len(row) > 1 and _SIDE.fullmatch(row[1]) for row in rows):
-            self.surfaces[name] = [(_member(row[0]), int(row[1][1:])) for row in rows]
+            self.surfaces[name] = [(_member(row[0]), _side(row[1])) for row in rows]
 
     def result(self) -> MeshContents:
         if max(len(self.node_sets), len(self.element_sets), len(self.surfaces)) > _MOST_SETS:
@@ -150,10 +170,10 @@ class _Deck:
                 CellBlock(kind, positions(nodes), {n: at for n, at in own.items() if len(at)})
             )
         for name, sides in self.surfaces.items():
-            lines = [_sides(merged, of, side, sets) for of, side in sides]
-            nodes = positions(np.concatenate([np.empty((0, 2), int), *lines]))
-            if len(nodes):
-                blocks.append(CellBlock("line", nodes, {name: np.arange(len(nodes))}))
+            for parts in _facets(merged, sides, sets).values():
+                nodes = positions(np.concatenate(parts))
+                kind = _FACETS[nodes.shape[1]]
+                blocks.append(CellBlock(kind, nodes, {name: np.arange(len(nodes))}))
         resolved = {name: _resolved(name, self.node_sets, tags) for name in self.node_sets}
         node_sets = {name: np.sort(positions(found)) for name, found in resolved.items()}
         return MeshContents(points, blocks, node_sets)
@@ -174,18 +194,25 @@ class _Deck:
         return tags[kept], points[kept]
 
 
-def _sides(
-    elements: dict[str, tuple[np.ndarray, ...]], of: int | str, side: int, sets: dict
-) -> np.ndarray:
-    """Corners of one side of an element, or of the elements of a set, shape (n, 2)."""
-    members = np.array([of]) if isinstance(of, int) else sets.get(of, np.empty(0, int))
-    found: list[np.ndarray] = [np.empty((0, 2), dtype=np.int64)]
-    for kind, (numbers, nodes) in elements.items():
-        corners = _CORNERS.get(kind.rstrip("0123456789"), 0)
-        if corners:
-            ends = nodes[:, [(side - 1) % corners, side % corners]]
-            found.append(ends[np.isin(numbers, members)])
-    return np.concatenate(found)
+def _facets(
+    elements: dict[str, tuple[np.ndarray, ...]], sides: list[tuple[int | str, int]], sets: dict
+) -> dict[int, list[np.ndarray]]:
+    """Corners (n, n_corners) of sides of elements, or of the elements of sets, by n_corners.
+
+    Side 0 is the element itself, a facet of a cell in space.
+    """
+    members: dict[int, list[np.ndarray]] = {}
+    for of, side in sides:
+        found = np.array([of]) if isinstance(of, int) else sets.get(of, np.empty(0, int))
+        members.setdefault(side, []).append(found)
+    result: dict[int, list[np.ndarray]] = {}
+    for side, parts in members.items():
+        for kind, (numbers, nodes) in elements.items():
+            sides_of_kind = (_SIDES if side else _SHELL_FACES).get(kind.rstrip("0123456789"), [])
+            chosen = np.isin(numbers, np.concatenate(parts))
+            for corners in sides_of_kind[max(side - 1, 0) :][:1] if chosen.any() else ():
+                result.setdefault(len(corners), []).append(nodes[chosen][:, corners])
+    return result
 
 
 def _words(line: str) -> list[str]:
@@ -206,6 +233,10 @@ def _whole(values: np.ndarray) -> np.ndarray:
     if not np.all(np.abs(values) < 2**53) or np.any(values != np.rint(values)):
         raise ValueError("the number of a node or an element is not an integer")
     return values.astype(np.int64)
+
+
+def _side(label: str) -> int:
+    return int(label[1:]) if label[1:].isdigit() else 0
 
 
 def _member(word: str) -> int | str:

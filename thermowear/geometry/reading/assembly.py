@@ -5,64 +5,32 @@ Bodies consist of one or several cell sets of the file, and may have parts by ce
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ...errors import CaseError
-from ..mesh.nodes import CORNERS, boundary
+from ..mesh.nodes import boundary, facet_nodes, numbered
 from ..mesh.tagged import TaggedMesh, compact
 from .contents import CellBlock, MeshContents
 from .mesh_checks import oriented
+from .named import TYPES, Named, facets_of
+from .solid_checks import oriented_solid
 
-_TYPES = {corners: name for name, corners in CORNERS.items()}
-_ORDERS = {(3, 3): 1, (3, 6): 2, (3, 10): 3, (4, 4): 1, (4, 8): 2, (4, 9): 2, (4, 16): 3}
-"""Geometric order by numbers of corners and nodes."""
+_ORDERS = {
+    "triangle": {3: 1, 6: 2, 10: 3},
+    "quadrilateral": {4: 1, 8: 2, 9: 2, 16: 3},
+    "tetrahedron": {4: 1, 10: 2, 20: 3},
+    "hexahedron": {8: 1, 20: 2, 27: 2, 64: 3},
+}
+"""Geometric order by cell type and number of nodes."""
+_PLURALS = {"tetrahedron": "tetrahedra", "hexahedron": "hexahedra"}
 _FARTHEST, _SMALLEST = 1e6, 1e-8
 """Largest distance of nodes from the origin, and least size of both bodies [m]."""
 
 
-@dataclass(frozen=True)
-class Named:
-    """Part of the case: its name, its sets in the file, and the key that defines it.
-
-    `body` is the index of the only body it can belong to.
-    """
-
-    name: str
-    sets: tuple[str, ...]
-    key: str
-    body: int | None = None
-
-    @property
-    def in_file(self) -> str:
-        return " + ".join(self.sets)
-
-    def members(self, block: CellBlock) -> np.ndarray:
-        """Indices of the elements of a block that are in the sets."""
-        found = [block.sets[name] for name in self.sets if name in block.sets]
-        return np.unique(np.concatenate([np.empty(0, dtype=np.int64), *found]))
-
-    def cells(self, contents: MeshContents) -> list[tuple[CellBlock, np.ndarray]]:
-        """Blocks with plane cells in the sets, and the indices of these cells.
-
-        Raises
-        ------
-        CaseError
-            If the file has no cells of a set.
-        """
-        plane = [block for block in contents.blocks if block.dim == 2]
-        for name in self.sets:
-            if not any(len(block.sets.get(name, ())) for block in plane):
-                known = ", ".join(contents.names(2)) or "none"
-                raise CaseError(
-                    f"{self.key}: the file has no cells named {name!r}; one of: {known}"
-                )
-        return [(block, at) for block in plane if len(at := self.members(block))]
-
-
 def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named]) -> TaggedMesh:
-    """Select the cells of the bodies and the edges of the surfaces.
+    """Select the cells of the bodies and the edges or facets of the surfaces.
 
     Raises
     ------
@@ -70,23 +38,27 @@ def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named])
         One line, reported at the key at fault.
     """
     found = [_cells_of(contents, body) for body in bodies]
-    points = _plane(contents.points, np.concatenate([block.nodes.ravel() for block in found]))
+    used = np.unique(np.concatenate([np.unique(block.nodes) for block in found]))
+    points = _placed(contents, used)
     shapes = {(block.corners, block.nodes.shape[1]) for block in found}
-    _check_one_type("geometry.bodies: different", shapes)
+    _check_one_type("geometry.bodies: different", shapes, contents.dim)
     _check_disjoint(found, bodies)
     ((corners, nodes_per_cell),) = shapes
-    kind, order = _TYPES[corners], _ORDERS[corners, nodes_per_cell]
-    points, cells = _with_centre_nodes(points, [block.nodes for block in found], corners)
+    kind = TYPES[contents.dim][corners]
+    order = _ORDERS[kind][nodes_per_cell]
+    points, cells = with_inner_nodes(points, [block.nodes for block in found], kind)
     # nodes shared by both bodies are duplicated, otherwise the bodies would be tied
     cells = [nodes + i * len(points) for i, nodes in enumerate(cells)]
     points = np.concatenate([points] * len(cells))
-    cells = [
-        oriented(points, nodes, kind, order, body.name)
-        for nodes, body in zip(cells, bodies, strict=True)
-    ]
-    edges = [boundary(kind, order, nodes) for nodes in cells]
+    cells, facets = zip(
+        *(
+            _oriented(points, nodes, kind, order, body.name)
+            for nodes, body in zip(cells, bodies, strict=True)
+        ),
+        strict=True,
+    )
     original = len(points) // len(cells)
-    picked = [_edges_of(contents, surface, edges, bodies, original) for surface in surfaces]
+    picked = [facets_of(contents, surface, facets, bodies, original) for surface in surfaces]
     counts = [len(nodes) for nodes in cells], [len(nodes) for nodes in picked]
     tags = [np.repeat(np.arange(len(n), dtype=np.int32) + 1, n) for n in counts]
     return compact(
@@ -103,9 +75,20 @@ def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named])
     )
 
 
-def _plane(points: np.ndarray, used: np.ndarray) -> np.ndarray:
-    """Nodes in the plane, with checks of coordinates and size."""
-    places = points[np.unique(used)]
+def _oriented(
+    points: np.ndarray, cells: np.ndarray, kind: str, order: int, body: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """Checked cells of a body with det J > 0, and its boundary."""
+    if points.shape[1] == 3:
+        return oriented_solid(points, cells, kind, order, body)
+    cells = oriented(points, cells, kind, order, body)
+    return cells, boundary(kind, order, cells)
+
+
+def _placed(contents: MeshContents, used: np.ndarray) -> np.ndarray:
+    """Nodes in the plane or in space, with checks of coordinates and size."""
+    points = contents.points
+    places = points[used]
     if not np.isfinite(places).all():
         raise CaseError("geometry.path: the coordinates of some nodes of the bodies are not finite")
     farthest = places[np.unravel_index(np.abs(places).argmax(), places.shape)[0]]
@@ -121,34 +104,36 @@ def _plane(points: np.ndarray, used: np.ndarray) -> np.ndarray:
             f"geometry.path: the bodies have a size of {extent:.3g} m; at least {_SMALLEST:g} m "
             "(check geometry.length_unit, the length of 1 in the file)"
         )
-    if points.shape[1] == 3 and np.ptp(places[:, 2]) > 1e-9 * extent:
+    in_plane = contents.dim == 2
+    if in_plane and points.shape[1] == 3 and np.ptp(places[:, 2]) > 1e-9 * extent:
         raise CaseError("geometry.path: the nodes do not lie in a plane z = const")
-    return np.ascontiguousarray(points[:, :2])
+    return np.ascontiguousarray(points[:, : contents.dim])
 
 
 def _cells_of(contents: MeshContents, body: Named) -> CellBlock:
     """Cells of a body, in one block."""
     found = body.cells(contents)
     shapes = {(block.corners, block.nodes.shape[1]) for block, _ in found}
-    _check_one_type(f"{body.key}: mixed", shapes)
+    _check_one_type(f"{body.key}: mixed", shapes, contents.dim)
     nodes = np.concatenate([block.nodes[at] for block, at in found])
-    shape = shapes.pop()
-    if shape not in _ORDERS:
-        raise CaseError(f"{body.key}: cells with {shape[1]} nodes are not supported")
+    ((corners, count),) = shapes
+    if count not in _ORDERS[TYPES[contents.dim][corners]]:
+        raise CaseError(f"{body.key}: cells with {count} nodes are not supported")
     return CellBlock(found[0][0].kind, nodes, {})
 
 
-def _check_one_type(found: str, shapes: set[tuple[int, int]]) -> None:
+def _check_one_type(found: str, shapes: set[tuple[int, int]], dim: int) -> None:
     """Reject cells of several numbers of corners and nodes."""
     if len(shapes) > 1:
-        kinds = " and ".join(f"{_TYPES.get(c, 'cell')}s of {n} nodes" for c, n in sorted(shapes))
+        names = [(TYPES[dim].get(corners, "cell"), nodes) for corners, nodes in sorted(shapes)]
+        kinds = " and ".join(f"{_PLURALS.get(name, name + 's')} of {n} nodes" for name, n in names)
         raise CaseError(f"{found} cell types, {kinds}; only one type is supported")
 
 
 def _check_disjoint(found: list[CellBlock], bodies: list[Named]) -> None:
     """Reject cells that belong to both bodies or occur twice."""
-    cells = np.sort(np.concatenate([b.nodes[:, : b.corners] for b in found]), axis=1)
-    double = len(cells) - len(np.unique(cells, axis=0))
+    _, count = numbered(np.concatenate([b.nodes[:, : b.corners] for b in found]))
+    double = int((count - 1).sum())
     if double:
         raise CaseError(
             f"geometry.bodies: {double} cells are in both {bodies[0].in_file!r} and "
@@ -156,98 +141,37 @@ def _check_disjoint(found: list[CellBlock], bodies: list[Named]) -> None:
         )
 
 
-def _with_centre_nodes(
-    points: np.ndarray, cells: list[np.ndarray], corners: int
+def with_inner_nodes(
+    points: np.ndarray, cells: list[np.ndarray], kind: str
 ) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Add the centre node of eight-node quadrilaterals, as implied by their shape functions."""
-    if corners != 4 or cells[0].shape[1] != 8:
+    """Add the nodes inside faces and cells that serendipity elements lack.
+
+    They lie where the shape functions of quadrilaterals of 8 nodes, and of hexahedra of 20, imply:
+    in a face at half the sum of its nodes in edges less a quarter of that of its corners, in a
+    hexahedron at a quarter of the sum of its nodes in edges less a quarter of that of its corners.
+    """
+    if (kind, cells[0].shape[1]) not in (("quadrilateral", 8), ("hexahedron", 20)):
         return points, cells
     result = []
     for nodes in cells:
-        x = points[nodes]
-        centre = x[:, 4:].sum(axis=1) / 2 - x[:, :4].sum(axis=1) / 4
+        if kind == "hexahedron":
+            on_face = facet_nodes(kind, 2)[:, :8]
+            faces = nodes[:, on_face].reshape(-1, 8)
+            number, _ = numbered(faces[:, :4])
+            _, first = np.unique(number, return_index=True)
+            nodes = np.column_stack([nodes, (len(points) + number).reshape(-1, 6)])
+            points = np.concatenate([points, _centre(points[faces[first]], 4, 2)])
+            cells_of, corners, share = nodes[:, :20], 8, 4
+        else:
+            cells_of, corners, share = nodes, 4, 2
+        centres = _centre(points[cells_of], corners, share)
         result.append(np.column_stack([nodes, len(points) + np.arange(len(nodes))]))
-        points = np.concatenate([points, centre])
+        points = np.concatenate([points, centres])
     return points, result
 
 
-def _edges_of(
-    contents: MeshContents,
-    surface: Named,
-    edges: list[np.ndarray],
-    bodies: list[Named],
-    copies: int,
-) -> np.ndarray:
-    """Boundary edges of a surface; the nodes of body i are those of the file plus i * copies."""
-    original = [of_body - i * copies for i, of_body in enumerate(edges)]
-    masks = _members(contents, surface, original, bodies)
-    allowed = range(len(edges)) if surface.body is None else [surface.body]
-    result = np.concatenate([edges[i][masks[i]] for i in allowed])
-    if not len(result):
-        whose = "a body" if surface.body is None else f"body {bodies[surface.body].name!r}"
-        raise CaseError(f"{surface.key}: {surface.in_file!r} is not on the boundary of {whose}")
-    return result
-
-
-def _members(
-    contents: MeshContents, surface: Named, edges: list[np.ndarray], bodies: list[Named]
-) -> list[np.ndarray]:
-    """Masks of the boundary edges of each body on a surface, given by its lines or nodes."""
-    (name,) = surface.sets
-    lines = [b.nodes[b.sets[name]] for b in contents.blocks if b.dim == 1 and name in b.sets]
-    if lines:
-        wanted = [_pairs(part) for part in lines]
-        own = [_pairs(of_body[:, :2]).ravel() for of_body in edges]
-        _check_lines(contents, surface, wanted, np.concatenate(own), bodies)
-        every = np.concatenate([part.ravel() for part in wanted])
-        return [np.isin(of_body, every) for of_body in own]
-    if name in contents.node_sets:
-        nodes = contents.node_sets[name]
-        return [np.all(np.isin(of_body, nodes), axis=1) for of_body in edges]
-    known = sorted({*contents.names(1), *contents.node_sets})
-    names = f"one of: {', '.join(known)}" if known else "it names no surface"
-    raise CaseError(f"{surface.key}: the file has no surface named {name!r}; {names}")
-
-
-def _pairs(nodes: np.ndarray) -> np.ndarray:
-    """Unique number of each pair of nodes of lines, shape (n_lines, n_pairs).
-
-    One of them is the pair of end nodes, in whichever order a format lists the nodes.
-    """
-    one, other = np.triu_indices(nodes.shape[1], 1)
-    low, high = (
-        np.minimum(nodes[:, one], nodes[:, other]),
-        np.maximum(nodes[:, one], nodes[:, other]),
-    )
-    return high * (high - 1) // 2 + low
-
-
-def _check_lines(
-    contents: MeshContents,
-    surface: Named,
-    wanted: list[np.ndarray],
-    own: np.ndarray,
-    bodies: list[Named],
-) -> None:
-    """Reject a surface with lines off all boundaries; those of further bodies are ignored."""
-    lost = [part for lines in wanted for part in lines[~np.isin(lines, own).any(axis=1)]]
-    if not lost:
-        return
-    others = [np.empty(0, dtype=np.int64)]
-    for block in contents.blocks:
-        if block.dim == 2:
-            used = np.concatenate([body.members(block) for body in bodies])
-            rest = np.delete(block.nodes, used, axis=0)
-            corners = rest[:, : block.corners]
-            ends = np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
-            others.append(_pairs(ends).ravel())
-    further = np.concatenate(others)
-    count = sum(not np.isin(part, further).any() for part in lost)
-    if count:
-        raise CaseError(
-            f"{surface.key}: {count} of {sum(map(len, wanted))} lines of {surface.in_file!r} are "
-            "not on the boundary of any body"
-        )
+def _centre(x: np.ndarray, corners: int, share: int) -> np.ndarray:
+    return x[:, corners:].sum(axis=1) / share - x[:, :corners].sum(axis=1) / 4
 
 
 def divided(

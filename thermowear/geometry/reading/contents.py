@@ -13,8 +13,18 @@ _SHAPES = {
     **dict.fromkeys(("line", "line3", "line4"), (1, 2)),
     **dict.fromkeys(("triangle", "triangle6", "triangle10"), (2, 3)),
     **dict.fromkeys(("quad", "quad8", "quad9", "quad16"), (2, 4)),
+    **dict.fromkeys(("tetra", "tetra10", "tetra20"), (3, 4)),
+    **dict.fromkeys(("hexahedron", "hexahedron20", "hexahedron27", "hexahedron64"), (3, 8)),
 }
 """Dimension and number of corners of the supported elements, by meshio's names."""
+
+VTK_ORDER = {
+    "tetra10": [0, 1, 2, 3, 4, 5, 6, 7, 9, 8],
+    "hexahedron20": [*range(9), 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14],
+    "hexahedron27": [*range(9), 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14, 24, 22, 20, 21, 23, 25]
+    + [26],
+}
+"""Nodes of VTK, Abaqus and MED (but for those inside its faces) in the order of gmsh."""
 
 _SHOWN = 40
 """Number of characters of a faulty line that a message quotes."""
@@ -32,11 +42,14 @@ class CellBlock:
         Indices of points, in gmsh's order; of lines in any order.
     sets : dict of str to ndarray of int
         Indices of the elements of each named set.
+    body : int or None
+        Index of the only body that the elements can belong to, if it has a file of its own.
     """
 
     kind: str
     nodes: np.ndarray
     sets: dict[str, np.ndarray]
+    body: int | None = None
 
     @property
     def dim(self) -> int:
@@ -57,39 +70,60 @@ class MeshContents:
         Coordinates in the file's unit of length.
     blocks : list of CellBlock
     node_sets : dict of str to ndarray of int
+    dim : int
+        Dimension of the cells of bodies: 2 of a section, 3 in space.
     """
 
     points: np.ndarray
     blocks: list[CellBlock]
     node_sets: dict[str, np.ndarray] = field(default_factory=dict)
+    dim: int = 2
 
     def names(self, dim: int) -> list[str]:
         """Names of sets of elements of a dimension."""
         found = [block.sets for block in self.blocks if block.dim == dim]
         return sorted({name for sets in found for name in sets})
 
-    def checked(self) -> MeshContents:
-        """Copy without point elements, after checks of the others.
+    def checked(self, dim: int) -> MeshContents:
+        """Copy with elements of bodies of a dimension and their surfaces, after checks of these.
 
         Raises
         ------
         ValueError
             If there are elements of other types, or with undefined nodes.
         """
-        blocks = [block for block in self.blocks if block.kind != "vertex" and len(block.nodes)]
+        left_out = ("vertex",) if dim == 2 else ("vertex", "line")
+        blocks = [b for b in self.blocks if not b.kind.startswith(left_out) and len(b.nodes)]
         for block in blocks:
             if block.kind not in _SHAPES:
                 raise ValueError(f"cells of type {block.kind} are not supported")
+            if block.dim > dim:
+                raise ValueError("it has three-dimensional cells; a plane section is needed")
             if block.nodes.ndim != 2 or block.nodes.min() < 0:
                 raise ValueError(f"the connectivity of cells of type {block.kind} is invalid")
             if block.nodes.max() >= len(self.points):
                 raise ValueError(f"cells of type {block.kind} have undefined nodes")
-            ordered = np.sort(block.nodes, axis=1)
-            if block.dim == 1 and np.any(ordered[:, 1:] == ordered[:, :-1]):
+            ordered = np.sort(block.nodes, axis=1) if block.dim == 1 else np.empty((0, 0))
+            if np.any(ordered[:, 1:] == ordered[:, :-1]):
                 raise ValueError(f"an element of type {block.kind} has a node twice")
         if self.points.ndim != 2 or self.points.shape[1] not in (2, 3):
             raise ValueError("nodes must have two or three coordinates")
-        return MeshContents(self.points, blocks, self.node_sets)
+        if self.points.shape[1] < dim:
+            raise ValueError("the nodes of bodies in space need three coordinates")
+        return MeshContents(self.points, blocks, self.node_sets, dim)
+
+
+def joined(files: list[MeshContents]) -> MeshContents:
+    """Contents of several files, each with one body, as if they were one."""
+    starts = np.cumsum([0] + [len(of.points) for of in files])
+    blocks, node_sets = [], {}
+    for body, (of, start) in enumerate(zip(files, starts, strict=False)):
+        blocks += [CellBlock(b.kind, b.nodes + start, b.sets, body) for b in of.blocks]
+        for name, nodes in of.node_sets.items():
+            known = node_sets.get(name, np.empty(0, dtype=np.int64))
+            node_sets[name] = np.concatenate([known, nodes + start])
+    points = np.concatenate([of.points for of in files])
+    return MeshContents(points, blocks, node_sets, files[0].dim)
 
 
 def numbering(numbers: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:

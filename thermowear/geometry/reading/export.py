@@ -14,6 +14,7 @@ _MESHIO_CELLS = {
     "interval": ("line", 2),
     "triangle": ("triangle", 3),
     "quadrilateral": ("quad", 4),
+    "tetrahedron": ("tetra", 4),
     "hexahedron": ("hexahedron", 8),
 }
 """Meshio's name of straight cells, to which that of others adds their number of nodes."""

@@ -22,13 +22,14 @@ import numpy as np
 
 from ...errors import CaseError
 from .abaqus import read_abaqus
-from .contents import CellBlock, MeshContents, shown
+from .contents import VTK_ORDER, CellBlock, MeshContents, shown
 from .gmsh_file import read_gmsh
 
 _MARK = b"\xef\xbb\xbf"
 """Byte order mark of UTF-8."""
-_LARGEST = 32 * 2**20
-"""Largest size of a file [bytes]: half a million nodes as text, read in seconds."""
+_LARGEST = {2: 32 * 2**20, 3: 1024 * 2**20}
+"""Largest size of a file by the dimension of its bodies [bytes]: half a million nodes of a section,
+or some million cells in space, as text."""
 _READER = Path(__file__).with_name("isolated_reader.py")
 _SECONDS = 60
 """Largest elapsed time, regardless of processor time."""
@@ -45,11 +46,11 @@ class _Kind(NamedTuple):
 
     name: str
     heads: tuple[bytes, ...]
-    read: Callable[[Path], MeshContents]
+    read: Callable[[Path, int], MeshContents]
 
 
-def read_contents(path: Path) -> MeshContents:
-    """Read a mesh file; its ending selects the format.
+def read_contents(path: Path, dim: int = 2) -> MeshContents:
+    """Read a mesh file with bodies of a dimension; its ending selects the format.
 
     Raises
     ------
@@ -62,28 +63,29 @@ def read_contents(path: Path) -> MeshContents:
             f"geometry.path: {path}: unknown file ending; must be one of: {', '.join(_KINDS)}"
         )
     try:
-        _check_file(path, kind)
-        contents = kind.read(path).checked()
+        _check_file(path, kind, _LARGEST[dim])
+        contents = kind.read(path, dim).checked(dim)
     except OSError as error:
         raise CaseError(f"geometry.path: {path} cannot be read: {error.strerror}") from None
     except Exception as error:  # readers raise any exception for a malformed file
         reason = " ".join(str(error).split()) or type(error).__name__
         raise CaseError(f"geometry.path: {path} cannot be read: {reason}") from None
-    if not any(block.dim == 2 for block in contents.blocks):
-        raise CaseError(f"geometry.path: {path} has no plane cells")
+    if not any(block.dim == dim for block in contents.blocks):
+        kinds = "plane cells" if dim == 2 else "tetrahedra or hexahedra"
+        raise CaseError(f"geometry.path: {path} has no {kinds}")
     return contents
 
 
-def _check_file(path: Path, kind: _Kind) -> None:
+def _check_file(path: Path, kind: _Kind, largest: int) -> None:
     """Reject non-files, files too large, and files without the first bytes of the format."""
     about = os.stat(path)
     if stat.S_ISDIR(about.st_mode):
         raise ValueError("Is a directory")
     if not stat.S_ISREG(about.st_mode):
         raise ValueError("it is a pipe or a device, not a file")
-    if about.st_size > _LARGEST:
+    if about.st_size > largest:
         raise ValueError(
-            f"it has {about.st_size / 2**20:.0f} MB; at most {_LARGEST / 2**20:.0f} MB are allowed"
+            f"it has {about.st_size / 2**20:.0f} MB; at most {largest / 2**20:.0f} MB are allowed"
         )
     with path.open("rb") as file:
         head = file.read(4096).removeprefix(_MARK).lstrip()
@@ -96,7 +98,7 @@ def _check_file(path: Path, kind: _Kind) -> None:
         )
 
 
-def read_isolated(path: Path) -> MeshContents:
+def read_isolated(path: Path, dim: int) -> MeshContents:
     """Read a .vtu, .xdmf or .med file.
 
     Raises
@@ -104,7 +106,7 @@ def read_isolated(path: Path) -> MeshContents:
     ValueError
         If it is malformed, refers to other files, or exceeds the limits of memory or time.
     """
-    memory = _MEMORY + _PER_BYTE * path.stat().st_size
+    memory = _MEMORY * (dim - 1) + _PER_BYTE * path.stat().st_size
     command = [sys.executable, "-P", str(_READER), str(path.resolve())]
     single = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), "1")
     try:
@@ -130,23 +132,31 @@ def _unpacked(data: bytes) -> MeshContents:
     with np.load(io.BytesIO(data), allow_pickle=False) as file:
         arrays = dict(file)
     contents = json.loads(str(arrays["contents"]))
-    blocks = [CellBlock(kind, arrays[f"nodes_{k}"], {}) for k, kind in enumerate(contents["kinds"])]
+    blocks = [
+        CellBlock(kind, _in_order(kind, arrays[f"nodes_{k}"]), {})
+        for k, kind in enumerate(contents["kinds"])
+    ]
     for number, (index, name) in enumerate(contents["sets"]):
         blocks[index].sets[name] = arrays[f"set_{number}"]
     sets = {name: arrays[f"node_set_{n}"] for n, name in enumerate(contents["node_sets"])}
     return MeshContents(arrays["points"], blocks, sets)
 
 
+def _in_order(kind: str, nodes: np.ndarray) -> np.ndarray:
+    """Nodes of elements in gmsh's order instead of VTK's."""
+    return nodes[:, VTK_ORDER[kind]] if kind in VTK_ORDER else nodes
+
+
 _KINDS = {
     ".msh": _Kind(
         "gmsh mesh",
         (b"$MeshFormat", b"$Comments"),
-        lambda path: read_gmsh(path.read_bytes().removeprefix(_MARK)),
+        lambda path, _: read_gmsh(path.read_bytes().removeprefix(_MARK)),
     ),
     ".inp": _Kind(
         "Abaqus input file",
         (b"*",),
-        lambda path: read_abaqus(path.read_text("utf-8-sig", "replace")),
+        lambda path, dim: read_abaqus(path.read_text("utf-8-sig", "replace"), dim),
     ),
     ".vtu": _Kind("VTK unstructured grid", (b"<?xml", b"<VTKFile", b"<!--"), read_isolated),
     ".xdmf": _Kind("XDMF file", (b"<?xml", b"<Xdmf", b"<!--", b"<!DOCTYPE Xdmf"), read_isolated),

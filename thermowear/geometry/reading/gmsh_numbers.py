@@ -12,12 +12,15 @@ from .contents import CellBlock, parsed
 
 _CELLS = {1: "line", 8: "line3", 26: "line4", 2: "triangle", 9: "triangle6", 21: "triangle10"}
 _CELLS |= {3: "quad", 16: "quad8", 10: "quad9", 36: "quad16", 15: "vertex"}
-"""gmsh's numbers of the element types of plane meshes."""
-_NODES = {"line": 2, "triangle": 3, "quad": 4, "vertex": 1} | {
+_CELLS |= {4: "tetra", 11: "tetra10", 29: "tetra20"}
+_CELLS |= {5: "hexahedron", 17: "hexahedron20", 12: "hexahedron27", 92: "hexahedron64"}
+"""gmsh's numbers of the element types."""
+_NODES = {"line": 2, "triangle": 3, "quad": 4, "vertex": 1, "tetra": 4, "hexahedron": 8} | {
     name: int(re.sub(r"\D", "", name)) for name in _CELLS.values() if name[-1].isdigit()
 }
-_SOLID = {*range(4, 8), *range(11, 15), *range(17, 20), *range(29, 34), *range(90, 96)}
-"""gmsh's numbers of common element types in space."""
+_OTHER_SOLIDS = {6: "prisms", 13: "prisms", 18: "prisms", 7: "pyramids", 14: "pyramids"}
+_OTHER_SOLIDS |= {19: "pyramids", 90: "prisms", 91: "prisms", 118: "pyramids"}
+"""gmsh's numbers of common element types in space that are not supported."""
 _MOST_ENTITIES = 100_000
 
 
@@ -120,7 +123,7 @@ class Elements:
 
     def named(self, names: dict[tuple[int, int], str], positions) -> CellBlock:
         """Block with node indices instead of numbers, and sets by the names of groups."""
-        dim = {"vert": 0, "line": 1}.get(self.kind[:4], 2)
+        dim = {"vert": 0, "line": 1, "tetr": 3, "hexa": 3}.get(self.kind[:4], 2)
         sets: dict[str, list[np.ndarray]] = {}
         for of_groups in self.groups:
             for group in np.unique(np.abs(of_groups[of_groups != 0])):
@@ -131,8 +134,11 @@ class Elements:
 
 
 def _kind(number: int) -> str:
-    if number in _SOLID:
-        raise ValueError("it has three-dimensional cells; a plane section is needed")
+    if number in _OTHER_SOLIDS:
+        raise ValueError(
+            f"{_OTHER_SOLIDS[number]} (gmsh's type {number}) are not supported; cells in space are "
+            "tetrahedra or hexahedra"
+        )
     if number not in _CELLS:
         raise ValueError(f"elements of gmsh's type {number} are not supported")
     return _CELLS[number]

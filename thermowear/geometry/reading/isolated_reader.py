@@ -25,10 +25,15 @@ _MIXED = {
     2: ("line", 2),
     4: ("triangle", 3),
     5: ("quad", 4),
+    6: ("tetra", 4),
+    9: ("hexahedron", 8),
     0x22: ("line3", 3),
     0x23: ("quad9", 9),
     0x24: ("triangle6", 6),
     0x25: ("quad8", 8),
+    0x26: ("tetra10", 10),
+    0x30: ("hexahedron20", 20),
+    0x32: ("hexahedron27", 27),
 }
 """Type and number of nodes of cells in mixed topologies, see XdmfTopologyType.cpp."""
 _COUNTED = (1, 2)
@@ -220,30 +225,37 @@ def _hdf5_dataset(path: Path, text: str) -> np.ndarray:
 
 def _mixed(data: np.ndarray) -> tuple[list[tuple[str, np.ndarray]], list[np.ndarray]]:
     """Blocks of cells of one type each, and indices of the cells in the file."""
-    starts: dict[int, list[int]] = {}
-    members: dict[int, list[int]] = {}
+    nodes: dict[int, list[np.ndarray]] = {}
+    members: dict[int, list[np.ndarray]] = {}
     at, cell = 0, 0
-    values = [int(value) for value in data]
-    while at < len(values):
-        number = values[at]
+    while at < len(data):
+        number = int(data[at])
         if number not in _MIXED:
             raise ValueError(f"cells of XDMF's type {number} are not supported")
         kind, count = _MIXED[number]
-        at += 1
-        if number in _COUNTED:
-            if values[at : at + 1] != [count]:
-                raise ValueError(f"cells of type {kind} must have {count} nodes")
-            at += 1
-        starts.setdefault(number, []).append(at)
-        members.setdefault(number, []).append(cell)
-        at, cell = at + count, cell + 1
-    if at != len(values):
+        head = [number, count] if number in _COUNTED else [number]
+        if data[at : at + len(head)].tolist() != head:
+            raise ValueError(f"cells of type {kind} must have {count} nodes")
+        rows = _equal_rows(data[at:], head, len(head) + count)
+        nodes.setdefault(number, []).append(rows[:, len(head) :])
+        members.setdefault(number, []).append(cell + np.arange(len(rows)))
+        at, cell = at + rows.size, cell + len(rows)
+    blocks = [(_MIXED[n][0], np.concatenate(parts)) for n, parts in nodes.items()]
+    return blocks, [np.concatenate(parts) for parts in members.values()]
+
+
+def _equal_rows(data: np.ndarray, head: list[int], width: int) -> np.ndarray:
+    """First rows of a width that begin with the same numbers, shape (n, width)."""
+    most = len(data) // width
+    if most == 0:
         raise ValueError("the last cell is incomplete")
-    blocks = [
-        (_MIXED[n][0], data[np.array(first)[:, None] + np.arange(_MIXED[n][1])])
-        for n, first in starts.items()
-    ]
-    return blocks, [np.array(cells) for cells in members.values()]
+    count, alike = 1, np.ones(1, dtype=bool)
+    while count < most and alike.all():
+        count = min(2 * count, most)
+        rows = data[: count * width].reshape(count, width)
+        alike = np.all(rows[:, : len(head)] == head, axis=1)
+    count = count if alike.all() else int(alike.argmin())
+    return data[: count * width].reshape(count, width)
 
 
 def _set_limits(memory: int) -> None:

@@ -20,7 +20,7 @@ _FLAT = 1e-8
 """Sine of the angle between grid lines below which a cell is degenerate."""
 _SAME = 1e-7
 """Distance relative to the size of a body below which nodes coincide."""
-_LEVEL = 1e-6
+LEVEL = 1e-6
 """Tolerance for nodes on a plane of symmetry, relative to the size of the bodies."""
 
 
@@ -222,19 +222,19 @@ def _symmetry(mesh: TaggedMesh, geometry: Geometry) -> None:
     size = np.ptp(mesh.points, axis=0).max()
     planes = {name: mesh.points[np.unique(_ends(mesh, name)), 0] for name in geometry.symmetry}
     for name, x in planes.items():
-        if np.ptp(x) > _LEVEL * size:
+        if np.ptp(x) > LEVEL * size:
             raise CaseError(
                 f"geometry.symmetry: {name!r} does not lie in a plane x = const; it ranges from "
                 f"x = {x.min():.6g} to {x.max():.6g} m"
             )
     every = np.concatenate(list(planes.values()))
-    if np.ptp(every) > _LEVEL * size:
+    if np.ptp(every) > LEVEL * size:
         raise CaseError(
             f"geometry.symmetry: the surfaces lie in different planes, x = {every.min():.6g} and "
             f"{every.max():.6g} m"
         )
     beyond = mesh.points[:, 0] - every.mean()
-    if min(beyond.max(), -beyond.min()) > _LEVEL * size:
+    if min(beyond.max(), -beyond.min()) > LEVEL * size:
         raise CaseError(
             f"geometry.half: the bodies lie on both sides of the plane of symmetry "
             f"x = {every.mean():.6g} m; a half model lies on one side"

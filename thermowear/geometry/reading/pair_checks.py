@@ -15,8 +15,10 @@ from ...errors import CaseError, note
 from ..mesh.nodes import shape_functions
 from ..mesh.tagged import TaggedMesh
 from .mesh_checks import length, whole_bodies
+from .solid_pairs import compared_solids
 
 if TYPE_CHECKING:
+    from ...case.tables.geometry import Geometry
     from ...case.tables.schema import Case
 
 _PIECES = 4
@@ -35,18 +37,21 @@ _AT_ONCE = 2000
 class _Faces:
     """Contact faces compared along the load direction.
 
-    Smallest distance, negative where the bodies overlap, and the range of x common to both faces;
-    height and name of the lower one of both bodies [m].
+    Smallest distance, negative where the bodies overlap [m], and its position in space as text;
+    area common to both faces [m²], and its extent as text; height [m] and name of the lower one of
+    both bodies.
     """
 
     gap: float
-    span: tuple[float, float]
+    where: str
+    area: float
+    extent: str
     height: float
     body: str
 
 
 def check_pair(mesh: TaggedMesh, case: Case) -> None:
-    """Check the relative position of the bodies of a section, and their compression by the load.
+    """Check the relative position of both bodies, and their compression by the load.
 
     Raises
     ------
@@ -58,13 +63,13 @@ def check_pair(mesh: TaggedMesh, case: Case) -> None:
     of_body = f"of {faces.body!r}, which is {length(height)} high"
     if overlap > _SQUEEZED * height:
         raise CaseError(
-            f"geometry.path: the bodies overlap by {length(overlap)}, {overlap / height:.0%} "
-            f"{of_body}; move the faces to initial contact"
+            f"geometry.path: the bodies overlap by {length(overlap)}{faces.where}, "
+            f"{overlap / height:.0%} {of_body}; move the faces to initial contact"
         )
     if faces.gap > height:
         raise CaseError(
-            f"geometry.path: the bodies lie {length(faces.gap)} apart, more than the height "
-            f"{of_body}; move the faces to initial contact"
+            f"geometry.path: the bodies lie {length(faces.gap)} apart{faces.where}, more than the "
+            f"height {of_body}; move the faces to initial contact"
         )
     approach = case.approach()
     if approach is not None:
@@ -72,7 +77,7 @@ def check_pair(mesh: TaggedMesh, case: Case) -> None:
     _check_pressure(case, faces)
     if overlap > _MUCH * height:
         note(
-            f"geometry.path: the bodies overlap by {length(overlap)} before loading, "
+            f"geometry.path: the bodies overlap by {length(overlap)} before loading{faces.where}, "
             f"{overlap / height:.1%} {of_body}"
         )
 
@@ -95,11 +100,7 @@ def _check_approach(case: Case, faces: _Faces, approach: float, of_body: str) ->
 
 def _check_pressure(case: Case, faces: _Faces) -> None:
     """Check that the mean pressure of a prescribed force is small relative to the moduli."""
-    force, (start, end) = case.force(), faces.span
-    if case.model == "axisymmetric":
-        area = np.pi * (end**2 - start**2)
-    else:
-        area = (end - start) * (case.geometry.thickness_factor or 0.0)
+    force, area = case.force(), faces.area
     if force is None or area == 0.0:
         return
     moduli = {
@@ -111,15 +112,34 @@ def _check_pressure(case: Case, faces: _Faces) -> None:
     strain = force / area / moduli[softer]
     if strain > _SQUEEZED:
         raise CaseError(
-            f"load: a mean pressure of {force / area / 1e6:.4g} MPa, for contact along the whole "
-            f"{length(end - start)} of the faces, is {strain:.2g} times the modulus of {softer!r} "
+            f"load: a mean pressure of {force / area / 1e6:.4g} MPa, for contact {faces.extent} of "
+            f"the faces, is {strain:.2g} times the modulus of {softer!r} "
             "(check geometry.length_unit)"
         )
 
 
 def _compared(mesh: TaggedMesh, case: Case) -> _Faces:
-    """Compare the contact faces along the load direction, which is -y in a section."""
+    """Compare the contact faces along the load direction, -y in a section and -z in space."""
     geometry = case.geometry
+    heights = {
+        name: float(np.ptp(mesh.points[np.unique(mesh.cells[mesh.cell_tags == tag]), -1]))
+        for tag, name in enumerate(mesh.bodies, start=1)
+    }
+    body = min(heights, key=heights.__getitem__)
+    if case.model == "3d":
+        found = compared_solids(mesh, geometry)
+        extent = f"on the whole {1e6 * found.area:.4g} mm²"
+        return _Faces(found.gap, f" {found.where}", found.area, extent, heights[body], body)
+    gap, (start, end) = _gap(mesh, geometry)
+    if case.model == "axisymmetric":
+        area = np.pi * (end**2 - start**2)
+    else:
+        area = (end - start) * (geometry.thickness_factor or 0.0)
+    return _Faces(gap, "", area, f"along the whole {length(end - start)}", heights[body], body)
+
+
+def _gap(mesh: TaggedMesh, geometry: Geometry) -> tuple[float, tuple[float, float]]:
+    """Smallest gap between the contact faces of a section, and their common range of x [m]."""
     upper, lower = (_pieces(mesh, name) for name in geometry.contact)
     down, up = upper[_normals(upper)[:, 1] < -_FACING], lower[_normals(lower)[:, 1] > _FACING]
     for facing, name, way in ((down, geometry.contact[0], "down"), (up, geometry.contact[1], "up")):
@@ -139,12 +159,7 @@ def _compared(mesh: TaggedMesh, case: Case) -> _Faces:
     ends = np.concatenate([down[..., 0].ravel(), up[..., 0].ravel()])
     x = np.unique(ends[(ends >= first) & (ends <= last)])
     gap = -_highest(-down[..., 1], down[..., 0], x) - _highest(up[..., 1], up[..., 0], x)
-    heights = {
-        name: float(np.ptp(mesh.points[np.unique(mesh.cells[mesh.cell_tags == tag]), 1]))
-        for tag, name in enumerate(mesh.bodies, start=1)
-    }
-    body = min(heights, key=heights.__getitem__)
-    return _Faces(float(np.nanmin(gap)), (float(first), float(last)), heights[body], body)
+    return float(np.nanmin(gap)), (float(first), float(last))
 
 
 def _pieces(mesh: TaggedMesh, surface: str) -> np.ndarray:

@@ -100,7 +100,7 @@ def _bodies(case: Case) -> tuple[Body, Body]:
             name=name,
             materials={part: _material(case, part) for part in geometry.parts_of(name)},
             fixed=() if surface in geometry.rollers else (surface,),
-            rollers=tuple(s for s in geometry.rollers if s == surface or s.startswith(f"{name}_")),
+            rollers=geometry.rollers_of(name),
             surfaces=tuple(s for s in geometry.surfaces if s.startswith(f"{name}_")),
             ring=1 / geometry.sector if name == moving else 1.0,
         )

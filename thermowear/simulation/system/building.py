@@ -187,6 +187,8 @@ def sliding_contact(
     if not motion.at_rest:
         velocity = kinematics.sliding(pairing.points, motion, motion.center, motion.across)
         slides = sliding(velocity, pairing.normals, model.holder.load_direction)
+        if model.sector_of_ring:
+            slides = replace(slides, along=np.zeros_like(slides.along))
         friction = model.interface.nominal_friction, model.interface.transverse_friction
         traction_direction = slides.traction_direction(pairing.normals, *friction)
         speed = slides.speed

@@ -1,0 +1,140 @@
+"""Relative position of the contact faces of two bodies in space."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy
+
+from ...case.tables.geometry import Geometry
+from ...errors import CaseError
+from ..mesh.nodes import reference_nodes, shape_functions
+from ..mesh.tagged import TaggedMesh
+from .solid_checks import at
+
+_TRIANGLES = {
+    ("triangle", 1): [(0, 1, 2)],
+    ("triangle", 2): [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)],
+    ("quadrilateral", 1): [(0, 1, 2), (0, 2, 3)],
+    ("quadrilateral", 2): [
+        *[(0, 4, 8), (0, 8, 7), (4, 1, 5), (4, 5, 8)],
+        *[(7, 8, 6), (7, 6, 3), (8, 5, 2), (8, 2, 6)],
+    ],
+}
+"""Small triangles of flat and curved facets, by their nodes."""
+_FACING = 0.05
+"""Least cosine between a normal and the load direction of a facet that faces the other body."""
+_NEAREST = 32
+"""Number of triangles around a point among which the one above or below it is sought."""
+_MOST = 20_000
+"""Largest number of points of a face that are compared."""
+
+
+@dataclass(frozen=True)
+class SolidFaces:
+    """Contact faces compared along the load direction, -z.
+
+    Attributes
+    ----------
+    gap : float
+        Smallest distance, negative where the bodies overlap [m].
+    where : str
+        Position of the smallest distance, as text.
+    area : float
+        Lesser area of both faces, projected along the load [m²].
+    """
+
+    gap: float
+    where: str
+    area: float
+
+
+def compared_solids(mesh: TaggedMesh, geometry: Geometry) -> SolidFaces:
+    """Compare the contact faces of two bodies along the load direction.
+
+    Raises
+    ------
+    CaseError
+        If they do not face each other.
+    """
+    names, bodies = geometry.contact, geometry.bodies
+    upper, lower = (_triangles(mesh, name) for name in names)
+    down, up = upper[_cosines(upper) < -_FACING], lower[_cosines(lower) > _FACING]
+    for facing, name, way in ((down, names[0], "down"), (up, names[1], "up")):
+        if not len(facing):
+            raise CaseError(
+                f"geometry.contact: {name!r} does not face {way}; body {bodies[0]!r} is loaded "
+                f"along -z, so it must lie above {bodies[1]!r}"
+            )
+    of_upper, of_lower = _nodes(down), _nodes(up)
+    below, above = of_upper[:, 2] - _heights(of_upper, up), _heights(of_lower, down)
+    gaps = np.concatenate([below, above - of_lower[:, 2]])
+    if np.isnan(gaps).all():
+        ranges = " and ".join(
+            ", ".join(
+                f"{c} = {a:.6g} to {b:.6g} m" for c, a, b in zip("xy", *_box(of), strict=True)
+            )
+            for of in (of_upper, of_lower)
+        )
+        raise CaseError(
+            f"geometry: the contact faces do not lie opposite each other; they range from {ranges}"
+        )
+    closest = int(np.nanargmin(gaps))
+    where = at(np.concatenate([of_upper, of_lower])[closest : closest + 1])
+    area = min(projected_area(mesh, name) for name in names)
+    return SolidFaces(float(gaps[closest]), where, area)
+
+
+def projected_area(mesh: TaggedMesh, surface: str) -> float:
+    """Area of a surface projected along z [m²]."""
+    x = _triangles(mesh, surface)
+    return float(abs(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])[:, 2].sum()) / 2)
+
+
+def _triangles(mesh: TaggedMesh, surface: str) -> np.ndarray:
+    """Small triangles of a surface, with outward normals, shape (n, 3, 3) [m]."""
+    kind, order = mesh.facet_type, min(mesh.order, 2)
+    values = shape_functions(kind, mesh.order, reference_nodes(kind, order))
+    points = np.einsum("qk,fki->fqi", values, mesh.points[mesh.facets_of(surface)])
+    return points[:, np.array(_TRIANGLES[kind, order])].reshape(-1, 3, 3)
+
+
+def _cosines(triangles: np.ndarray) -> np.ndarray:
+    """Third component of the unit normals, shape (n,)."""
+    x = triangles
+    normals = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])
+    return normals[:, 2] / np.linalg.norm(normals, axis=1)
+
+
+def _nodes(triangles: np.ndarray) -> np.ndarray:
+    """Corners of triangles, at most `_MOST` of them, shape (n, 3) [m]."""
+    nodes = np.unique(triangles.reshape(-1, 3), axis=0)
+    return nodes[:: 1 + len(nodes) // _MOST]
+
+
+def _box(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    return points.min(axis=0)[:2], points.max(axis=0)[:2]
+
+
+def _heights(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Height of the triangle above or below each point, NaN where there is none, shape (n,)."""
+    centres = triangles[..., :2].mean(axis=1)
+    count = min(_NEAREST, len(centres))
+    _, near = scipy.spatial.cKDTree(centres).query(points[:, :2], k=count)
+    corners = triangles[near.reshape(len(points), count)]
+    a, b, c = np.moveaxis(corners[..., :2], 2, 0)
+    p = points[:, None, :2]
+    whole = _cross(b - a, c - a)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        s, t = _cross(p - a, c - a) / whole, _cross(b - a, p - a) / whole
+    inside = (s >= -1e-6) & (t >= -1e-6) & (s + t <= 1 + 1e-6)
+    z = corners[..., 2]
+    height = z[..., 0] + s * (z[..., 1] - z[..., 0]) + t * (z[..., 2] - z[..., 0])
+    found = inside.argmax(axis=1)[:, None]
+    height = np.take_along_axis(height, found, axis=1)[:, 0]
+    return np.where(inside.any(axis=1), height, np.nan)
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]

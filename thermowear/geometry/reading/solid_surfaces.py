@@ -1,0 +1,165 @@
+"""Checks of the named bodies and surfaces of a mesh file in space."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ...case.tables.geometry import Geometry
+from ...errors import CaseError, note
+from ..mesh.nodes import boundary, components, meeting, numbered
+from ..mesh.tagged import TaggedMesh
+from .mesh_checks import LEVEL, length, whole_bodies
+from .solid_checks import CORNERS, at, node_links
+
+_FLUSH = 0.95
+"""Least cosine of the angle between facets on both sides of the rim of a hole in one surface."""
+_PLANES = {"symmetry": 0, "rollers": 1}
+"""Keys of surfaces on planes, and the coordinate that is constant there."""
+
+
+def check_solid_mesh(mesh: TaggedMesh, geometry: Geometry) -> None:
+    """Check the named bodies and surfaces of a mesh; note holes in contact faces.
+
+    Raises
+    ------
+    CaseError
+        If surfaces share facets, a contact face branches, a piece of a body is not held, or a
+        surface of symmetry or on rollers does not lie in a plane.
+    """
+    mesh = whole_bodies(mesh, geometry)
+    _check_shared_facets(mesh)
+    for body, surface in enumerate(geometry.contact):
+        _check_surface(mesh, surface, body)
+    for body, surface in zip(geometry.bodies, (geometry.held, geometry.fixed), strict=True):
+        _check_pieces_held(mesh, body, surface)
+    for key, axis in _PLANES.items():
+        if getattr(geometry, key):
+            _check_planes(mesh, key, getattr(geometry, key), axis)
+
+
+def facet_corners(mesh: TaggedMesh, facets: np.ndarray) -> np.ndarray:
+    """Corners of facets, shape (n, 3 or 4)."""
+    return facets[:, : 3 if mesh.facet_type == "triangle" else 4]
+
+
+def _check_shared_facets(mesh: TaggedMesh) -> None:
+    """Reject facets with more than one surface name."""
+    corners = facet_corners(mesh, mesh.facets)
+    number, count = numbered(corners)
+    double = count[number] > 1
+    if double.any():
+        same = np.flatnonzero(number == number[np.argmax(double)])
+        one, two = (mesh.surfaces[mesh.facet_tags[k] - 1] for k in same[:2])
+        raise CaseError(
+            f"geometry.surfaces: {one!r} and {two!r} share {np.count_nonzero(count > 1)} facets of "
+            f"the mesh, one {at(mesh.points[corners[same[0]]])}; a facet can belong to one surface "
+            "only"
+        )
+
+
+def _edges(corners: np.ndarray) -> np.ndarray:
+    """Ends of the edges of facets, facet by facet, shape (n * n_corners, 2)."""
+    return np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
+
+
+def _check_surface(mesh: TaggedMesh, surface: str, body: int) -> None:
+    """Reject a branched contact face; note holes in it that lie in the same surface of the body."""
+    corners = facet_corners(mesh, mesh.facets_of(surface))
+    edges = _edges(corners)
+    number, count = numbered(edges)
+    branched = count[number] > 2
+    if branched.any():
+        raise CaseError(
+            f"geometry.contact: {surface!r} branches {at(mesh.points[edges[np.argmax(branched)]])};"
+            " an edge of a contact face has at most two facets"
+        )
+    rim = np.flatnonzero(count[number] == 1)
+    if not len(rim):
+        return
+    label = components(edges[rim], len(mesh.points))[edges[rim, 0]]
+    loops = [rim[label == loop] for loop in np.unique(label)]
+    sizes = [np.ptp(mesh.points[edges[loop].ravel()], axis=0) for loop in loops]
+    outer = int(np.argmax([np.linalg.norm(size) for size in sizes]))
+    inner = [k for k in range(len(loops)) if k != outer]
+    flush = _flush(mesh, corners, edges, rim, body) if inner else np.empty(0)
+    for k in inner:
+        if flush[np.isin(rim, loops[k])].all():
+            lengths = " by ".join(length(x) for x in np.sort(sizes[k])[:0:-1])
+            note(
+                f"geometry.contact: {surface!r} has a hole of {lengths} "
+                f"{at(mesh.points[edges[loops[k], 0]])}: its facets are in no named surface, and "
+                "have no contact"
+            )
+
+
+def _flush(
+    mesh: TaggedMesh, corners: np.ndarray, edges: np.ndarray, rim: np.ndarray, body: int
+) -> np.ndarray:
+    """Mask of rim edges beyond which an unnamed facet of the body continues the surface."""
+    nodes = np.zeros(len(mesh.points), dtype=bool)
+    nodes[edges[rim]] = True
+    kind = mesh.cell_type
+    cells = mesh.cells[mesh.cell_tags == body + 1][:, : CORNERS[kind]]
+    around = boundary(kind, 1, cells[nodes[cells].any(axis=1)])
+    around = around[nodes[around].sum(axis=1) >= 2]
+    named = facet_corners(mesh, mesh.facets)
+    number, _ = numbered(np.concatenate([around, named]))
+    around = around[~np.isin(number[: len(around)], number[len(around) :])]
+    sides = corners.shape[1]
+    pairs = meeting(np.concatenate([edges[rim], _edges(around)]))
+    pairs = pairs[(pairs[:, 0] < len(rim)) & (pairs[:, 1] >= len(rim))]
+    inside = _normals(mesh, corners[rim[pairs[:, 0]] // sides])
+    beyond = _normals(mesh, around[(pairs[:, 1] - len(rim)) // sides])
+    result = np.zeros(len(rim), dtype=bool)
+    result[pairs[:, 0]] = np.einsum("ni,ni->n", inside, beyond) > _FLUSH
+    return result
+
+
+def _normals(mesh: TaggedMesh, corners: np.ndarray) -> np.ndarray:
+    """Unit normals of facets at their first corner, shape (n, 3)."""
+    x = mesh.points[corners]
+    normals = np.cross(x[:, 1] - x[:, 0], x[:, -1] - x[:, 0])
+    return normals / np.linalg.norm(normals, axis=1, keepdims=True)
+
+
+def _check_pieces_held(mesh: TaggedMesh, body: str, surface: str) -> None:
+    """Check that every piece of a body has part of the surface that holds it."""
+    cells = mesh.cells[mesh.cell_tags == mesh.bodies.index(body) + 1][:, : CORNERS[mesh.cell_type]]
+    label = components(node_links(cells), len(mesh.points))
+    of_cells = label[cells[:, 0]]
+    pieces = np.unique(of_cells)
+    held = label[facet_corners(mesh, mesh.facets_of(surface))]
+    loose = np.isin(of_cells, held, invert=True)
+    if loose.any():
+        raise CaseError(
+            f"geometry.path: {loose.sum()} of {len(cells)} cells of {body!r} are not joined to "
+            f"those held at {surface!r}, one {at(mesh.points[cells[np.argmax(loose)]])}; a body "
+            "must be in one piece"
+        )
+    if len(pieces) > 1:
+        note(f"geometry.path: {body!r} has {len(pieces)} pieces, all held by {surface!r}")
+
+
+def _check_planes(mesh: TaggedMesh, key: str, names: tuple[str, ...], axis: int) -> None:
+    """Check that surfaces lie in planes x or y = const, with the bodies on one side of each."""
+    letter, size = "xy"[axis], np.ptp(mesh.points, axis=0).max()
+    on_planes = [np.unique(facet_corners(mesh, mesh.facets_of(name))) for name in names]
+    for name, nodes in zip(names, on_planes, strict=True):
+        level = mesh.points[nodes, axis]
+        if np.ptp(level) > LEVEL * size:
+            raise CaseError(
+                f"geometry.{key}: {name!r} does not lie in a plane {letter} = const; it ranges from"
+                f" {letter} = {level.min():.6g} to {level.max():.6g} m"
+            )
+        beyond = mesh.points[:, axis] - level.mean()
+        if min(beyond.max(), -beyond.min()) > LEVEL * size:
+            raise CaseError(
+                f"geometry.{key}: the bodies lie on both sides of the plane of {name!r}, "
+                f"{letter} = {level.mean():.6g} m"
+            )
+    nodes = np.concatenate(on_planes)
+    for tag, body in enumerate(mesh.bodies, start=1):
+        if not np.isin(mesh.cells[mesh.cell_tags == tag], nodes).any():
+            raise CaseError(
+                f"geometry.{key}: no surface of {body!r} is listed; each body needs one"
+            )

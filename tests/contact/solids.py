@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import replace
 
 from mpi4py import MPI
@@ -18,9 +17,7 @@ from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
-from thermowear.geometry.mesh.nodes import boundary, reference_nodes
-from thermowear.geometry.meshing.cells import MeshedBody, mesh_lattice, tagged_bodies
-from thermowear.lagrange import matching
+from thermowear.geometry.meshing.cells import divided_hexahedra, mesh_lattice, tagged_bodies
 from thermowear.laws.motions import translation
 
 COMM = MPI.COMM_WORLD
@@ -57,20 +54,6 @@ def bent(p):
     )
 
 
-def in_tetrahedra(body: MeshedBody, order: int) -> MeshedBody:
-    """Each hexahedron becomes six tetrahedra along its diagonal, with the same nodes."""
-    nodes = reference_nodes("tetrahedron", order)
-    cells = []
-    for axes in itertools.permutations(np.eye(3)):
-        ends = np.cumsum([np.zeros(3), *axes], axis=0)
-        if np.linalg.det(axes) < 0:
-            ends[[1, 2]] = ends[[2, 1]]
-        places = ends[0] + nodes @ (ends[1:] - ends[0])
-        cells.append(body.cells[:, matching(places, reference_nodes("hexahedron", order))])
-    cells = np.concatenate(cells)
-    return MeshedBody(body.points, cells, boundary("tetrahedron", order, cells))
-
-
 def two_solids(divisions=MATCHING, order=1, maps=(straight, straight), cell_type="hexahedron"):
     """Two boxes, mapped. Surfaces of ``upper`` are ``upper_face``, ``upper_end``, ``upper_low_x``,
     ``upper_high_x`` and so on by the parameters before they are mapped; of ``lower`` likewise.
@@ -81,7 +64,7 @@ def two_solids(divisions=MATCHING, order=1, maps=(straight, straight), cell_type
         limits = ((0.0, SIZE[0]), (0.0, SIZE[1]), span)
         ends = tuple(np.linspace(*limit, n + 1) for limit, n in zip(limits, counts, strict=True))
         body = mesh_lattice(ends, order, straight)
-        bodies[name] = body if cell_type == "hexahedron" else in_tetrahedra(body, order)
+        bodies[name] = body if cell_type == "hexahedron" else divided_hexahedra(body, order)
         points.append(place(bodies[name].points))
         levels = {"face": (2, 0.0), "end": (2, sum(span))}
         for axis, letter in enumerate("xy"):

@@ -15,17 +15,18 @@ from .cases.hertz import flat_punch, hertz_line, hertz_sphere
 from .cases.instability import half_plane_instability, sliding_rod
 from .cases.minimality import minimality
 from .cases.moving_band import moving_band
+from .cases.patch_in_space import patch_3d
 from .cases.reciprocating import reciprocating
 from .cases.special_cases import SPECIAL_CASES
 from .cases.transient_heat import braking_stop, step_flux
 from .check import Check, all_checks, compare, identified
 
 _CASES = SPECIAL_CASES | dict.fromkeys((
-    annular_punch, running_in, patch, hertz_line, hertz_sphere, flat_punch, methods_agree, mindlin,
-    growing_cylinder, growing_sphere, block_on_ring, pin_on_disc, deep_wear, beam_shakedown,
-    fretting_wear, fretting_cylinder, fuel_fretting, reciprocating, moving_band, two_slabs,
-    pressure_conductance, temperature_dependent, minimality, step_flux, braking_stop, sliding_rod,
-    half_plane_instability, optimal_shape,
+    annular_punch, running_in, patch, patch_3d, hertz_line, hertz_sphere, flat_punch,
+    methods_agree, mindlin, growing_cylinder, growing_sphere, block_on_ring, pin_on_disc,
+    deep_wear, beam_shakedown, fretting_wear, fretting_cylinder, fuel_fretting,
+    reciprocating, moving_band, two_slabs, pressure_conductance, temperature_dependent,
+    minimality, step_flux, braking_stop, sliding_rod, half_plane_instability, optimal_shape,
 ), ())  # fmt: skip
 CASES = {
     id: identified(id, case, *runs)

@@ -68,8 +68,8 @@ def _condensed_features(case: Case) -> Iterator[str]:
     own = {"reciprocating": "a reciprocating analysis", "fretting": "sticking"}
     if type_ in own:
         yield own[type_]
-    if case.model == "3d":
-        yield "3d models"
+    if case.model == "3d" and type_ == "transient" and _passes_disk(case):
+        yield "wear spread over the track of a disk in 3d"
     elif type_ == "stability":
         yield "a stability analysis"
     elif heat is not None and heat.transient:
@@ -78,6 +78,12 @@ def _condensed_features(case: Case) -> Iterator[str]:
         yield "variable friction, wear or conductance"
     elif heat is not None and any(_factors(case)):
         yield "variable conductivity or expansion"
+
+
+def _passes_disk(case: Case) -> bool:
+    """True if the wear of a body is averaged along its circles, which couples distant points."""
+    geometry, spread = case.geometry, any(w.spread != "in-place" for w in case.wear.values())
+    return spread and (geometry.duty is not None or geometry.footprint is not None)
 
 
 def _factors(case: Case) -> Iterator[str]:

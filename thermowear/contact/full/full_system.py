@@ -14,6 +14,7 @@ import scipy.sparse as sp
 
 from ...errors import ComputationError
 from ...serialise import serialisable
+from ..search.pairing import Pairing
 from ..solvers.signorini import solve_contact
 from .edge_deflection import EdgeDeflection
 from .equations import ContactEquations, Loading
@@ -23,10 +24,11 @@ _STAGNATION_TOLERANCE = 1e-8
 """Relative residual accepted when rounding prevents a further reduction."""
 _MAX_ITERATIONS = 25
 _MIN_LOAD_STEP = 1 / 16
-_COARSE_FUNCTIONS = 24
-"""Number of pressure functions of the coarse problem that gives the initial guess."""
-_MAX_REFINEMENTS, _MIN_FUNCTIONS = 3, 5
-"""Largest number of coarse refinements, and functions across the contact that suffice."""
+_COARSE_FUNCTIONS = {1: (24, 5), 2: (8, 3)}
+"""Number of pressure functions along each direction of the coarse problem that gives the initial
+guess, and number of them across the contact that suffices, by the dimension of the face."""
+_MAX_REFINEMENTS = 3
+"""Largest number of coarse refinements."""
 _ACTIVE_PRESSURE_RATIO = 0.15
 """Fraction of the coarse peak pressure above which points are active at first: too small a contact
 gains all penetrating points at once, while too large a contact loses only its outermost points in
@@ -125,23 +127,23 @@ class FullContact(ContactEquations):
     def _guess(self, loading: Loading) -> FullSolution:
         """Initial guess: contact with a coarse pressure space on the contact zone."""
         own = self.elastic.solve(loading.nodal_loads)
-        s = self.pairing.position
-        start, end = s[0], s[-1]
+        s = _coordinates(self.pairing)
+        count, enough = _COARSE_FUNCTIONS[s.shape[1]]
+        start, end = s.min(axis=0), s.max(axis=0)
         for _ in range(_MAX_REFINEMENTS):
-            found = self._coarse(loading, own, start, end)
+            found = self._coarse(loading, own, _hats(s, start, end))
             pressing = s[found.active]
-            width = (end - start) / _COARSE_FUNCTIONS
-            if np.ptp(pressing) > _MIN_FUNCTIONS * width:
+            width = (end - start) / count
+            if np.all(np.ptp(pressing, axis=0) > enough * width):
                 break
-            start, end = pressing.min() - width, pressing.max() + width
+            start, end = pressing.min(axis=0) - width, pressing.max(axis=0) + width
         return found
 
-    def _coarse(self, loading: Loading, own: np.ndarray, start: float, end: float) -> FullSolution:
-        """Contact with hat functions as pressures between two positions.
+    def _coarse(self, loading: Loading, own: np.ndarray, hats: np.ndarray) -> FullSolution:
+        """Contact with hat functions (n, m) as pressures.
 
         Costs one elastic solution per function, and no factorisation.
         """
-        hats = _hats(self.pairing.position, start, end)
         weighted = self.pairing.weights[:, None] * hats
         fields = self.elastic.solve(self._traction @ sp.csr_matrix(weighted))
         softness = loading.compliance + (0.0 if self.nitsche else 1 / self.stiffness)
@@ -233,12 +235,27 @@ class FullContact(ContactEquations):
         )
 
 
-def _hats(position: np.ndarray, start: float, end: float) -> np.ndarray:
-    """Piecewise linear functions of equal width on part of the face, shape (n, m)."""
-    count = int(np.sum((position >= start) & (position <= end)))
-    knots = np.linspace(start, end, max(2, min(_COARSE_FUNCTIONS, count // 3)))
-    distance = np.abs(position[:, None] - knots) / (knots[1] - knots[0])
-    hats = np.maximum(1.0 - distance, 0.0)
+def _coordinates(pairing: Pairing) -> np.ndarray:
+    """Coordinates of the contact points: position along a face, principal axes of a surface."""
+    if pairing.points.shape[1] == 2:
+        return pairing.position[:, None]
+    centred = pairing.points - pairing.points.mean(axis=0)
+    return centred @ np.linalg.svd(centred.T @ centred)[2][:2].T
+
+
+def _hats(s: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Piecewise linear functions of equal width on part of the face, shape (n, m).
+
+    Products of those along each coordinate (n, dim), between a start and an end (dim,).
+    """
+    count = int(np.sum(np.all((s >= start) & (s <= end), axis=1)))
+    most = min(_COARSE_FUNCTIONS[s.shape[1]][0], int((count // 3) ** (1 / s.shape[1])))
+    hats = np.ones((len(s), 1))
+    for along, first, last in zip(s.T, start, end, strict=True):
+        knots = np.linspace(first, last, max(2, most))
+        distance = np.abs(along[:, None] - knots) / (knots[1] - knots[0])
+        part = np.maximum(1.0 - distance, 0.0)
+        hats = (hats[:, :, None] * part[:, None]).reshape(len(s), -1)
     return hats[:, hats.sum(axis=0) > 0.5]  # some may contain too few points
 
 

@@ -43,7 +43,7 @@ class NewtonMatrix:
         subtracted: np.ndarray,
         symmetry: str,
     ):
-        self._symmetry = symmetry
+        self._symmetry, self._dim = symmetry, elastic.bodies.mesh.topology.dim
         fixed = supported(elastic.stiffness, elastic.fixed)
         if subtracted.any():
             columns = distributed(elastic.space, stress)
@@ -78,7 +78,7 @@ class NewtonMatrix:
         self._constant.copy(self._matrix, _SAME_PATTERN)
         self._matrix.axpy(1.0, self._product, _SUBSET_PATTERN)
         if self._factor is None:
-            self._factor = DirectSolver(self._matrix, self._symmetry)
+            self._factor = DirectSolver(self._matrix, self._symmetry, self._dim)
         else:
             self._factor.repeat()
         if self._symmetry == "symmetric" and self._factor.negative_pivots:

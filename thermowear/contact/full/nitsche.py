@@ -7,10 +7,13 @@ contact.
 
 from __future__ import annotations
 
+import itertools
+
 import basix
 import numpy as np
 import scipy.sparse as sp
 from dolfinx import fem
+from scipy.spatial import cKDTree
 
 from ...bulk.field import reference_element
 from ...bulk.mechanics.elasticity import Elasticity
@@ -44,7 +47,8 @@ def normal_traction(elastic: Elasticity, pairing: Pairing) -> sp.csr_matrix:
     values = cell_traction(elastic, side, mine, pairing.normals[point[mine]])
     values *= share[mine, None, None]
     cells = side.face.cell[side.facet[mine]]
-    rows = space.dofmap.list[cells].astype(np.int64)[..., None] * 2 + np.arange(2)
+    dim = space.mesh.geometry.dim
+    rows = space.dofmap.list[cells].astype(np.int64)[..., None] * dim + np.arange(dim)
     columns = np.broadcast_to(point[mine, None, None], values.shape)
     entries = rows.ravel(), columns.ravel(), values.ravel()
     return gather_rows(space, *entries, len(pairing.weights))
@@ -53,7 +57,7 @@ def normal_traction(elastic: Elasticity, pairing: Pairing) -> sp.csr_matrix:
 def cell_traction(
     elastic: Elasticity, side: PairedFace, chosen: np.ndarray, normals: np.ndarray
 ) -> np.ndarray:
-    """Traction along normals per nodal displacement of the cell, shape (n, nodes, 2) [Pa/m].
+    """Traction along normals per nodal displacement of the cell, shape (n, nodes, gdim) [Pa/m].
 
     Per area of the common face with these normals.
 
@@ -63,7 +67,7 @@ def cell_traction(
     side : PairedFace
     chosen : ndarray of int, shape (n,)
         Entries of the side, all in cells of this rank.
-    normals : ndarray, shape (n, 2)
+    normals : ndarray, shape (n, gdim)
         Normals of the common face.
     """
     facet = side.facet[chosen]
@@ -105,15 +109,15 @@ def displacement_slopes(elastic: Elasticity, cells: np.ndarray, reference: np.nd
     elastic : Elasticity
     cells : ndarray of int, shape (n,)
         Cells of this rank.
-    reference : ndarray, shape (n, 2)
+    reference : ndarray, shape (n, gdim)
 
     Returns
     -------
     volume : ndarray, shape (n,)
         Volume of the solid per volume of the reference cell [m³].
-    slopes : ndarray, shape (n, nodes, 2)
+    slopes : ndarray, shape (n, nodes, gdim)
         Derivatives of the shape functions along the coordinates [1/m].
-    divergence : ndarray, shape (n, nodes, 2)
+    divergence : ndarray, shape (n, nodes, gdim)
         tr ε per nodal displacement in each direction [1/m].
     """
     mesh, model = elastic.bodies.mesh, elastic.kinematics
@@ -121,7 +125,7 @@ def displacement_slopes(elastic: Elasticity, cells: np.ndarray, reference: np.nd
     geometry = equispaced(element.cell_type.name, coordinate_element(mesh).degree)
     values, *derivatives = tabulated(element, reference, 1)
     placed, *stretched = tabulated(geometry, reference, 1)
-    nodes = mesh.geometry.x[geometry_dofmap(mesh)[cells], :2]
+    nodes = mesh.geometry.x[geometry_dofmap(mesh)[cells], : mesh.geometry.dim]
     points = np.einsum("ng,ngi->ni", placed, nodes)
     jacobian = np.einsum("dng,ngi->nid", stretched, nodes)
     slopes = np.einsum("dna,ndi->nai", derivatives, np.linalg.inv(jacobian))
@@ -131,18 +135,20 @@ def displacement_slopes(elastic: Elasticity, cells: np.ndarray, reference: np.nd
 
 
 def on_every_facet(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray]:
-    """Points on body 1, those shared by two facets once per facet, with their area fraction.
+    """Points on body 1, those shared by several facets for each of them, with their area fraction.
 
     Returns
     -------
     side : PairedFace
-        One entry per point and facet.
+        One entry per point and facet, on a surface per point and part of a facet.
     point : ndarray of int
         Point index of each entry.
     share : ndarray
         Sums to one at each point.
     """
     side, s = pairing.sides[0], pairing.position
+    if side.face.dim == 2:
+        return _on_every_part(pairing)
     inner = np.arange(1, len(s) - 1)
     meets = (side.t[inner] > 1 - 1e-9) & (side.facet[inner + 1] == side.facet[inner] + 1)
     meeting = inner[meets]
@@ -154,6 +160,15 @@ def on_every_facet(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray
     t = np.concatenate([side.t, np.zeros(len(meeting))])
     point = np.concatenate([np.arange(len(s)), meeting])
     return PairedFace(side.face, facet, t), point, np.concatenate([share, 1 - share[meeting]])
+
+
+def _on_every_part(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray]:
+    """Points of a surface on all parts of its facets, see `on_every_facet`."""
+    side, pieces = pairing.sides[0], pairing.pieces
+    every = PairedFace(side.face, pieces.facet, pieces.t)
+    point = cKDTree(side.points).query(every.points)[1]
+    area = pieces.weight * side.face.stretch(pieces.facet, pieces.t)
+    return every, point, area / np.bincount(point, area)[point]
 
 
 def nitsche_stiffness(elastic: Elasticity, pairing: Pairing, gamma: float = GAMMA) -> np.ndarray:
@@ -248,10 +263,14 @@ def _cell_stiffness(elastic: Elasticity, cell: int) -> np.ndarray:
     """Stiffness matrix of one cell, regularised against rigid motions."""
     λ, μ = (cell_values(function, np.array([cell]))[0] for function in elastic.lame[:2])
     weights, slopes, divergence = _cell_rule(elastic, cell)
-    strain = np.zeros((len(weights), 4, *slopes.shape[1:]))
-    strain[:, 0, :, 0], strain[:, 1, :, 1] = slopes[..., 0], slopes[..., 1]
-    strain[:, 2, :, 0] = divergence[..., 0] - slopes[..., 0]
-    strain[:, 3] = slopes[..., ::-1] / np.sqrt(2)
+    dim = slopes.shape[-1]
+    across = list(itertools.combinations(range(dim), 2))
+    strain = np.zeros((len(weights), dim + 1 + len(across), *slopes.shape[1:]))
+    for i in range(dim):
+        strain[:, i, :, i] = slopes[..., i]
+    strain[:, dim, :, 0] = divergence[..., 0] - slopes[..., 0]
+    for k, (i, j) in enumerate(across, start=dim + 1):
+        strain[:, k, :, [i, j]] = np.moveaxis(slopes[..., [j, i]], 2, 0) / np.sqrt(2)
     strain *= np.sqrt(2 * μ * weights)[:, None, None, None]
     trace = (np.sqrt(λ * weights)[:, None, None] * divergence).reshape(len(weights), -1)
     strain = strain.reshape(-1, trace.shape[1])

@@ -21,6 +21,8 @@ from ...serialise import serialisable
 from .lemke import lemke
 
 _TOLERANCE = 1e-9
+_MAX_SETS = 1000
+"""Largest number of active sets tried; a few tens suffice unless the compliance is singular."""
 Solution = TypeVar("Solution")
 
 
@@ -137,7 +139,7 @@ def active_set(
         Next active set of a solution.
     """
     tried = set()
-    while active.tobytes() not in tried:
+    while active.tobytes() not in tried and len(tried) < _MAX_SETS:
         tried.add(active.tobytes())
         solution = solve(active)
         if solution is None:

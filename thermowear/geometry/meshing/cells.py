@@ -8,11 +8,13 @@ follow the map. Surfaces are named by predicates of their facets.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...lagrange import matching
 from ..mesh.nodes import boundary, components, reference_nodes
 from ..mesh.tagged import TaggedMesh
 from .divisions import MOST_HEXAHEDRA, check_count
@@ -236,6 +238,20 @@ def mesh_lattice(
     number[1] %= len(v)
     cells = np.ravel_multi_index(tuple(number), (len(u), len(v), len(w)))
     return MeshedBody(points, cells, boundary("hexahedron", order, cells))
+
+
+def divided_hexahedra(body: MeshedBody, order: int) -> MeshedBody:
+    """Mesh in which each hexahedron is six tetrahedra along its diagonal (Kuhn), same nodes."""
+    nodes = reference_nodes("tetrahedron", order)
+    cells = []
+    for axes in itertools.permutations(np.eye(3)):
+        ends = np.cumsum([np.zeros(3), *axes], axis=0)
+        if np.linalg.det(axes) < 0:
+            ends[[1, 2]] = ends[[2, 1]]
+        places = ends[0] + nodes @ (ends[1:] - ends[0])
+        cells.append(body.cells[:, matching(places, reference_nodes("hexahedron", order))])
+    every = np.concatenate(cells)
+    return MeshedBody(body.points, every, boundary("tetrahedron", order, every))
 
 
 def _parameters(ends: np.ndarray, order: int) -> np.ndarray:

@@ -30,12 +30,12 @@ from ...model.body import Body, Material
 from ...model.conditions import Heat, Holder, Motion
 from ...model.interface import (
     CircularTrack,
-    PinTrack,
     ContactMethod,
     EvenTrack,
     FaceWear,
     HardnessConductance,
     Interface,
+    PinTrack,
 )
 from ...model.model import Discretisation, Model, Zone
 

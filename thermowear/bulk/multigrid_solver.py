@@ -8,6 +8,8 @@ the number of unknowns.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from petsc4py import PETSc
 
 import numpy as np
@@ -16,7 +18,7 @@ from dolfinx import fem
 from dolfinx.fem.petsc import interpolation_matrix
 
 from ..errors import ComputationError
-from .field import owned
+from .field import as_function, lagrange_space, owned
 
 RELATIVE_TOLERANCE = 1e-9
 """Reduction of the residual at which a solution is accepted."""
@@ -43,12 +45,13 @@ class MultigridSolver:
     ----------
     matrix : petsc4py.PETSc.Mat
         Assembled, with the rows and columns of fixed values eliminated.
-    coarse : petsc4py.PETSc.Mat
-        The same problem with linear elements on the same mesh.
-    space, coarse_space : dolfinx.fem.FunctionSpace
-        Their spaces.
-    fixed, coarse_fixed : ndarray of bool
-        Masks of their fixed values among the owned ones.
+    space : dolfinx.fem.FunctionSpace
+        Its space.
+    fixed : ndarray of bool, shape (n_owned,)
+        Mask of fixed values.
+    coarse : callable, optional
+        Assembles the same problem, without its fixed values, in a space of linear elements on the
+        same mesh; by default the Galerkin product of the matrix with their interpolation.
 
     Raises
     ------
@@ -61,22 +64,25 @@ class MultigridSolver:
     def __init__(
         self,
         matrix: PETSc.Mat,
-        coarse: PETSc.Mat,
         space: fem.FunctionSpace,
-        coarse_space: fem.FunctionSpace,
         fixed: np.ndarray,
-        coarse_fixed: np.ndarray,
+        coarse: Callable[[fem.FunctionSpace], PETSc.Mat] | None = None,
     ):
         self.iterations: list[int] = []
-        self._matrix, self._coarse = matrix, coarse
-        for level in (matrix, coarse):
+        self._matrix = matrix
+        linear = lagrange_space(space.mesh, 1, _components(space))
+        held = _at_vertices(space, fixed, linear)
+        prolongation = _prolongation(linear, space, held, fixed)
+        below = matrix.ptap(prolongation) if coarse is None else coarse(linear)
+        _eliminate(below, held)
+        for level in (matrix, below):
             level.setBlockSize(space.dofmap.index_map_bs)
             level.setOption(PETSc.Mat.Option.SPD, True)
-        coarse.setNearNullSpace(_near_nullspace(coarse_space, coarse))
+        below.setNearNullSpace(_near_nullspace(linear, below))
         self._solver = _conjugate_gradients(matrix)
         multigrid = self._solver.getPC()
-        multigrid.setMGInterpolation(1, _prolongation(coarse_space, space, coarse_fixed, fixed))
-        multigrid.getMGCoarseSolve().setOperators(coarse)
+        multigrid.setMGInterpolation(1, prolongation)
+        multigrid.getMGCoarseSolve().setOperators(below)
         options = PETSc.Options(self._solver.getOptionsPrefix())
         for name, value in _OPTIONS.items():
             options[name] = value
@@ -128,6 +134,28 @@ def _conjugate_gradients(matrix: PETSc.Mat) -> PETSc.KSP:
     multigrid.setType(PETSc.PC.Type.MG)
     multigrid.setMGLevels(2)
     return solver
+
+
+def _components(space: fem.FunctionSpace) -> int:
+    """Number of components of a vector-valued space, 0 of a scalar one."""
+    return 0 if space.dofmap.index_map_bs == 1 else space.dofmap.index_map_bs
+
+
+def _at_vertices(
+    space: fem.FunctionSpace, fixed: np.ndarray, linear: fem.FunctionSpace
+) -> np.ndarray:
+    """Mask of the fixed values of linear elements, (n_owned,). Every rank calls."""
+    held = fem.Function(linear)
+    held.interpolate(as_function(space, fixed.astype(float), "fixed"))
+    return held.x.array[: owned(linear)] > 0.5
+
+
+def _eliminate(matrix: PETSc.Mat, fixed: np.ndarray) -> None:
+    """Eliminate rows and columns of fixed values (n_owned,) of a matrix. Every rank calls."""
+    diagonal = matrix.getDiagonal().getArray()
+    largest = max(matrix.comm.tompi4py().allgather(float(np.abs(diagonal).max(initial=0.0))))
+    rows = np.flatnonzero(fixed) + matrix.getOwnershipRange()[0]
+    matrix.zeroRowsColumns(rows.astype(PETSc.IntType), diag=largest)
 
 
 def _prolongation(

@@ -14,6 +14,8 @@ from .body import Body, Material
 from .conditions import Heat, Holder, Motion
 from .interface import Interface
 
+Solver = Literal["auto", "direct", "multigrid"]
+"""Linear solver of bodies in space."""
 Zone = tuple[float, float]
 """Range of x [m]."""
 
@@ -69,10 +71,13 @@ class Discretisation:
         Polynomial degree of displacement and temperature.
     positioning : bool
         Move the mesh until element ends coincide with the contact edges.
+    solver : str
+        Linear solver of bodies in space: ``"auto"`` (by size), ``"direct"`` or ``"multigrid"``.
     """
 
     degree: int
     positioning: bool = False
+    solver: Solver = "auto"
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from ..case.values import units
 from ..case.values.units import in_python
@@ -19,8 +19,8 @@ from ..model.analyses import (
     TransientAnalysis,
 )
 from ..model.conditions import Heat, Motion
-from ..model.model import Discretisation, Model
-from ..simulation.analyses.run import solve
+from ..model.model import Discretisation, Model, Solver
+from ..simulation.analyses.run import needs_single_solution, solve
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.building import build
 from ..simulation.system.system import SetupCache, System
@@ -33,6 +33,7 @@ from .march import MarchState, march
 from .solution import ModelSolution
 from .user_mesh import UserMeshes, user_meshes
 
+SOLVERS = get_args(Solver)
 _OF_SECTIONS = ("axisymmetric", "plane-strain", "plane-stress")
 
 
@@ -57,6 +58,8 @@ class ScriptedModel:
         [m].
     degree : int
         Polynomial degree of displacement and temperature.
+    solver : str
+        Linear solver of bodies in space: ``"auto"`` (by size), ``"direct"`` or ``"multigrid"``.
     symmetry : sequence of BodySurface
         Surfaces on planes of symmetry x = const.
     title : str
@@ -74,6 +77,7 @@ class ScriptedModel:
     kinematics: Literal["axisymmetric", "plane-strain", "plane-stress"] | None = None
     thickness: Any = None
     degree: int = 2
+    solver: Solver = "auto"
     symmetry: Sequence[BodySurface] = ()
     title: str = ""
     _shared: dict[Any, Any] = field(default_factory=dict, repr=False)
@@ -175,11 +179,17 @@ class ScriptedModel:
         observer = observer or Observer()
         model = self._model(closes_by_wear=not isinstance(analysis, FrettingAnalysis))
         parts = self._shared.setdefault("parts", SetupCache())
-        return build(model, self.bodies[0].mesh.comm, Phases(observer.phase), parts=parts)
+        single = needs_single_solution(model, analysis)
+        comm, phases = self.bodies[0].mesh.comm, Phases(observer.phase)
+        return build(model, comm, phases, parts=parts, single=single)
 
     def _model(self, closes_by_wear: bool) -> Model:
         held, meshes = self.holders[0].surface, self.meshes
         number(self.degree, "Model.degree", 1, 10)
+        if self.solver not in SOLVERS:
+            raise CaseError(
+                f"Model.solver: found {self.solver!r}; must be one of {', '.join(SOLVERS)}"
+            )
         dim = meshes.tagged.points.shape[1]
         if self.kinematics not in (_OF_SECTIONS if dim == 2 else (None,)):
             raise CaseError(
@@ -200,7 +210,7 @@ class ScriptedModel:
             interfaces=(self.interfaces[0].in_model(self.bodies, closes_by_wear),),
             holders=(self.holders[0].in_model(dim),),
             meshes=meshes,
-            discretisation=Discretisation(self.degree),
+            discretisation=Discretisation(self.degree, solver=self.solver),
             motion=self._motion(),
             heat=self.heat,
             thickness=thickness,

@@ -16,8 +16,9 @@ from dolfinx import fem
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..direct_solver import DirectSolver, multiply
+from ..direct_solver import multiply
 from ..field import without_fixed
+from ..solver_choice import AnySolver, SolverChoice, linear_solver
 from .advection import Advection
 from .even_paths import EvenPaths
 
@@ -28,7 +29,7 @@ no other heat flows; rounding errors are 1e-8 of these flows."""
 
 @dataclass(frozen=True)
 class Conduction:
-    """Heat conduction problem of the bodies with factorised matrix.
+    """Heat conduction problem of the bodies, with the solver of its equations.
 
     Attributes
     ----------
@@ -46,13 +47,15 @@ class Conduction:
         Mask of prescribed temperatures.
     prescribed : ndarray, shape (n_owned,)
         Prescribed rise in the fixed values, zero elsewhere [K].
-    factor : DirectSolver
-        Factorisation of conductivity plus bath, with prescribed temperatures eliminated.
+    factor : DirectSolver or MultigridSolver
+        Solver of conductivity plus bath, with prescribed temperatures eliminated.
     advection : Advection or None
     even : EvenPaths or None
         Paths of a fast moving body, along which the temperature is uniform.
     symmetric : bool
-        True if the factorised matrix is symmetric.
+        True if the matrix of the solver is symmetric.
+    choice : SolverChoice
+        Kind of the solver.
     """
 
     space: fem.FunctionSpace
@@ -62,10 +65,11 @@ class Conduction:
     bath: PETSc.Mat
     fixed: np.ndarray
     prescribed: np.ndarray
-    factor: DirectSolver
+    factor: AnySolver
     advection: Advection | None
     even: EvenPaths | None
     symmetric: bool
+    choice: SolverChoice
 
     def respond(self, heat: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Rise [K] due to nodal heat [W] alone, homogeneous in prescribed values; by columns."""
@@ -115,15 +119,30 @@ class Conduction:
         return 0.0
 
     def with_added(self, matrix: PETSc.Mat, times: float, symmetric: bool) -> Conduction:
-        """Add a multiple of a matrix of the same pattern to the conductivity, and factorise."""
+        """Add a multiple of a matrix of the same pattern to the conductivity; a new solver."""
         total = self.conductivity.copy()
         total.axpy(times, matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
         return replace(
             self,
             conductivity=total,
-            factor=factorised(self.space, total, self.bath, self.fixed, symmetric, self.even),
+            factor=conduction_solver(
+                self.space, total, self.bath, self.fixed, symmetric, self.even, self.choice
+            ),
             symmetric=symmetric,
         )
+
+    def with_bath(self, bath: PETSc.Mat) -> Conduction:
+        """Copy whose solver includes another matrix of heat transfer instead of the bath."""
+        factor = conduction_solver(
+            self.space,
+            self.conductivity,
+            bath,
+            self.fixed,
+            self.symmetric,
+            self.even,
+            self.choice,
+        )
+        return replace(self, bath=bath, factor=factor)
 
     def stored_heat(self, rise: np.ndarray) -> np.ndarray:
         """Nodal stored heat [J], owned rows; its sum over all ranks is that of the bodies."""
@@ -201,15 +220,19 @@ class Conduction:
         return without_fixed(heat, self.fixed) if self._has_prescribed else heat
 
 
-def factorised(
+def conduction_solver(
     space,
     conductivity: PETSc.Mat,
     bath: PETSc.Mat,
     fixed: np.ndarray,
     symmetric: bool,
     even: EvenPaths | None,
-) -> DirectSolver:
-    """Factorise conductivity plus bath, rows and columns of prescribed temperatures eliminated."""
+    choice: SolverChoice,
+) -> AnySolver:
+    """Solver of conductivity plus bath, rows and columns of prescribed temperatures eliminated.
+
+    Where temperatures are uniform along paths, or heat is carried along, it is direct.
+    """
     matrix = conductivity.copy()
     matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     known = "definite" if symmetric else "none"
@@ -217,7 +240,7 @@ def factorised(
         return even.factor(matrix, fixed, known)
     first = matrix.getOwnershipRange()[0]
     matrix.zeroRowsColumns((np.flatnonzero(fixed) + first).astype(PETSc.IntType), diag=1.0)
-    return DirectSolver(matrix, known, dim=space.mesh.topology.dim)
+    return linear_solver(choice, matrix, space, fixed, known)
 
 
 def _column_sums(matrix: PETSc.Mat) -> np.ndarray:

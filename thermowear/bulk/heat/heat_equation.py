@@ -15,8 +15,9 @@ from ..bodies import Bodies
 from ..compiled import assembled_matrix, nodal_loads
 from ..field import owned
 from ..kinematics import Kinematics, section_measure
+from ..solver_choice import SolverChoice
 from .advection import Passage, advection
-from .conduction import Conduction, factorised
+from .conduction import Conduction, conduction_solver
 from .even_paths import EvenPaths
 
 
@@ -42,8 +43,9 @@ def conduction(
     given: dict[str, float],
     bath: PETSc.Mat,
     passage: Passage | None = None,
+    choice: SolverChoice | None = None,
 ) -> Conduction:
-    """Assemble the heat conduction problem and factorise it.
+    """Assemble the heat conduction problem and set up its solver. Every rank calls.
 
     Parameters
     ----------
@@ -63,7 +65,10 @@ def conduction(
         interface problem subtracts it again.
     passage : Passage, optional
         Motion of a body through the frame.
+    choice : SolverChoice, optional
+        Direct by default.
     """
+    choice = choice or SolverChoice()
     mesh, degree = bodies.mesh, space.ufl_element().degree
     T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
     conductivities = {part: material.conductivity for part, material in materials.items()}
@@ -89,7 +94,7 @@ def conduction(
         capacity = assembled_matrix(kinematics.integral(mesh, density, measure))
 
     fixed, values = given_rises(bodies, space, given, even)
-    factor = factorised(space, conductivity, bath, fixed, moving is None, even)
+    factor = conduction_solver(space, conductivity, bath, fixed, moving is None, even, choice)
     return Conduction(
         space,
         conductivity,
@@ -102,6 +107,7 @@ def conduction(
         moving,
         even,
         symmetric=moving is None,
+        choice=choice,
     )
 
 

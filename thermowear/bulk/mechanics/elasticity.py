@@ -15,9 +15,10 @@ from dolfinx import mesh as dmesh
 
 from ..bodies import Bodies
 from ..compiled import assembled_matrix, surface_area
-from ..direct_solver import DirectSolver, multiply
+from ..direct_solver import multiply
 from ..field import lagrange_space, owned, without_fixed
 from ..kinematics import Kinematics, section_measure
+from ..solver_choice import AnySolver, SolverChoice, linear_solver
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class ElasticMaterial:
 
 @dataclass(frozen=True)
 class Elasticity:
-    """Elasticity problem of the bodies with factorised stiffness.
+    """Elasticity problem of the bodies, with the solver of its equations.
 
     Attributes
     ----------
@@ -43,8 +44,8 @@ class Elasticity:
         Stiffness without supports: its residual contains the support reactions.
     fixed : ndarray of bool, shape (n_owned,)
         Mask of values held at zero.
-    factor : DirectSolver
-        Factorisation of the supported stiffness.
+    factor : DirectSolver or MultigridSolver
+        Solver of the supported stiffness.
     lame : tuple of dolfinx.fem.Function
         λ, μ and thermal modulus times α of the model, constant on each body [Pa, Pa/K].
     """
@@ -54,7 +55,7 @@ class Elasticity:
     space: fem.FunctionSpace
     stiffness: PETSc.Mat
     fixed: np.ndarray
-    factor: DirectSolver
+    factor: AnySolver
     lame: tuple[fem.Function, fem.Function, fem.Function]
 
     def stress(self, u, rise=None):
@@ -148,8 +149,9 @@ def elasticity(
     clamped: list[str],
     symmetric: tuple[str, ...] = (),
     rollers: tuple[str, ...] = (),
+    choice: SolverChoice | None = None,
 ) -> Elasticity:
-    """Assemble the stiffness and factorise it.
+    """Assemble the stiffness and set up its solver. Every rank calls.
 
     Parameters
     ----------
@@ -165,15 +167,22 @@ def elasticity(
         Surfaces on a plane of symmetry x = const.: the first displacement component vanishes.
     rollers : tuple of str
         Surfaces whose second displacement component vanishes.
+    choice : SolverChoice, optional
+        Direct by default.
     """
     mesh = bodies.mesh
     space = lagrange_space(mesh, degree, mesh.geometry.dim)
     lame = _lame(bodies, kinematics, materials)
-    u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
-    form = _virtual_work(mesh, kinematics, lame, u, δu, section_measure(mesh, degree))
-    stiffness = assembled_matrix(form)
+
+    def assembled(space: fem.FunctionSpace) -> PETSc.Mat:
+        u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
+        measure = section_measure(mesh, space.ufl_element().degree)
+        return assembled_matrix(_virtual_work(mesh, kinematics, lame, u, δu, measure))
+
+    stiffness = assembled(space)
     fixed = fixed_values(bodies, kinematics, space, clamped, {0: symmetric, 1: rollers})
-    factor = DirectSolver(supported(stiffness, fixed), dim=mesh.topology.dim)
+    matrix = supported(stiffness, fixed)
+    factor = linear_solver(choice or SolverChoice(), matrix, space, fixed, coarse=assembled)
     return Elasticity(bodies, kinematics, space, stiffness, fixed, factor, lame)
 
 

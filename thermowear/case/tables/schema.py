@@ -63,6 +63,8 @@ class MeshTable(Section):
         Number of elements along the contact.
     grading : float
         Size ratio of neighbouring elements towards the contact edges.
+    solver : str
+        Linear solver of bodies in space: ``auto`` (by size), ``direct`` or ``multigrid``.
     bodies : dict of str to FaceMesh
         Deviations for single bodies: the meshes of the faces need not match.
     """
@@ -70,6 +72,7 @@ class MeshTable(Section):
     degree: Annotated[int, Field(ge=1, le=10, strict=True)] = 8
     elements: Elements = 12
     grading: Grading = 0.3
+    solver: Literal["auto", "direct", "multigrid"] = "auto"
     bodies: dict[str, FaceMesh] = {}
 
     def face(self, body: str) -> tuple[int, float]:

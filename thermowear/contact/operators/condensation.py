@@ -174,7 +174,7 @@ def condense_heat(
         field = conduction.respond(heat[:, columns].tocsr())
         found.append([trace.T @ field for trace in traces])
     Θ1, Θ2 = (sum_over_ranks(comm, np.hstack(columns)) for columns in zip(*found, strict=True))
-    return InterfaceHeat(weights, basis, traces, shift, (Θ1, Θ2), partition)
+    return InterfaceHeat(weights, basis, traces, shift, partition, (Θ1, Θ2))
 
 
 def condense_distortion(
@@ -204,10 +204,12 @@ def condense_distortion(
 
 def bath_matrix(space, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
     """Matrix ``Σ E_iᵀ w s E_i`` of the bath at both faces, for `bulk.conduction`; collective."""
-    first, second = (
-        distributed(space, (trace @ sp.diags(np.sqrt(weights * shift))).tocsr()) for trace in traces
-    )
-    matrix = first.matMult(first.copy().transpose())
-    other = second.matMult(second.copy().transpose())
-    matrix.axpy(1.0, other, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
-    return matrix
+    first, second = (transfer_matrix(space, trace, weights * shift) for trace in traces)
+    first.axpy(1.0, second, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    return first
+
+
+def transfer_matrix(space, trace: sp.csr_matrix, sizes: np.ndarray) -> PETSc.Mat:
+    """Matrix ``Eᵀ diag(sizes) E`` of a transposed trace Eᵀ and sizes (n,) >= 0; collective."""
+    root = distributed(space, (trace @ sp.diags(np.sqrt(sizes))).tocsr())
+    return root.matMult(root.copy().transpose())

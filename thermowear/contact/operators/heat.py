@@ -2,6 +2,7 @@
 
 The bodies are linear and are condensed to their contact points once (`condensation`); their
 coupling (conductance, perfect contact, separated points) is solved here with small dense matrices.
+Bodies with many contact points are coupled without condensation in `coupled_heat`.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ functions independent that differ only where no heat crosses."""
 _MAX_DIRECT_RATIO = 10.0
 """Largest conductance treated point by point, relative to that of a layer of the bodies as thick as
 the support of a basis function."""
-_NO_HEAT_SINK = (
+NO_HEAT_SINK = (
     "heat: a body is heated that nothing cools and that touches nothing, so that it has no steady "
     "temperature; give it heat.cooling, heat.temperature, or heat.gap_conductance"
 )
@@ -63,8 +64,8 @@ class BaselineResponse:
 
 
 @dataclass(frozen=True)
-class InterfaceHeat:
-    """Heat conduction in both bodies, condensed to the contact points.
+class FaceHeat:
+    """Heat at the contact points, and its exchange between the faces.
 
     Attributes
     ----------
@@ -77,8 +78,6 @@ class InterfaceHeat:
     shift : float
         Heat transfer to a bath at ambient included in the factorised conduction on both faces, and
         subtracted again here [W/(m² K)].
-    response : tuple of ndarray, shape (n, n)
-        Face rise per heat flux at the points, the bath included [m² K/W].
     partition : float or ndarray, shape (n,)
         Fraction of the friction heat released on body 1.
     """
@@ -87,11 +86,19 @@ class InterfaceHeat:
     basis: Basis
     traces: tuple[sp.csr_matrix, sp.csr_matrix]
     shift: float
-    response: tuple[np.ndarray, np.ndarray]
     partition: float | np.ndarray
 
-    def exchange(self, conductance: np.ndarray) -> HeatExchange:
-        """Couple the faces by a conductance.
+    def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
+        """Nodal heat of the contact [W], owned rows; heat of the bath included on request."""
+        shift = self.shift if bath else 0.0
+        first, second = (
+            trace @ (self.weights * (flux + shift * rise))
+            for trace, rise, flux in zip(self.traces, state.rise, state.flux, strict=True)
+        )
+        return first + second
+
+    def divided(self, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Divide conductances (n,) into parts that are finite and well scaled.
 
         Up to a conductance ``k``, a multiple of that of the bodies, heat crosses point by point:
         ``c = h (T2 - T1)``. Nonmatching finite elements cannot represent a larger one pointwise,
@@ -101,6 +108,37 @@ class InterfaceHeat:
         ``η z`` and the temperature jump ``r η z = (1 - η) z / k``, which is imposed weakly with the
         test functions ``η Ψ``. The equations are symmetric and regular from zero to infinite
         conductance.
+
+        Returns
+        -------
+        direct : ndarray, shape (n,)
+            Conductance point by point [W/(m² K)].
+        passing_fraction : ndarray, shape (n,)
+            Fraction η.
+        resistance : ndarray, shape (n,)
+            Resistance ``η r η`` of the unknowns [m² K/W].
+        """
+        limit = _MAX_DIRECT_RATIO * self.shift * self.basis.shape[1]
+        direct = np.minimum(conductance, limit)
+        passing_fraction, blocked_fraction = _parts(limit, conductance - direct)
+        resistance = blocked_fraction * (passing_fraction + _REGULARITY * blocked_fraction) / limit
+        return direct, passing_fraction, resistance
+
+
+@dataclass(frozen=True)
+class InterfaceHeat(FaceHeat):
+    """Heat conduction in both bodies, condensed to the contact points.
+
+    Attributes
+    ----------
+    response : tuple of ndarray, shape (n, n)
+        Face rise per heat flux at the points, the bath included [m² K/W].
+    """
+
+    response: tuple[np.ndarray, np.ndarray]
+
+    def exchange(self, conductance: np.ndarray) -> HeatExchange:
+        """Couple the faces by a conductance, see `divided`.
 
         Parameters
         ----------
@@ -114,10 +152,7 @@ class InterfaceHeat:
             If a heated body has no heat sink.
         """
         n, s, (Θ1, Θ2) = len(self.weights), self.shift, self.response
-        limit = _MAX_DIRECT_RATIO * s * self.basis.shape[1]
-        direct = np.minimum(conductance, limit)
-        passing_fraction, blocked_fraction = _parts(limit, conductance - direct)
-        resistance = blocked_fraction * (passing_fraction + _REGULARITY * blocked_fraction) / limit
+        direct, passing_fraction, resistance = self.divided(conductance)
         basis = dense(self.basis)
         crossing = passing_fraction[:, None] * basis
         jump = crossing.T * self.weights
@@ -135,18 +170,9 @@ class InterfaceHeat:
         try:
             rise = np.linalg.solve(matrix, np.eye(2 * n + count, 2 * n))
         except np.linalg.LinAlgError:
-            raise ComputationError(_NO_HEAT_SINK) from None
+            raise ComputationError(NO_HEAT_SINK) from None
         across = direct[:, None] * (rise[n : 2 * n] - rise[:n]) + crossing @ rise[2 * n :]
         return HeatExchange(self, rise[: 2 * n], across)
-
-    def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
-        """Nodal heat of the contact [W], owned rows; heat of the bath included on request."""
-        shift = self.shift if bath else 0.0
-        first, second = (
-            trace @ (self.weights * (flux + shift * rise))
-            for trace, rise, flux in zip(self.traces, state.rise, state.flux, strict=True)
-        )
-        return first + second
 
 
 @dataclass(frozen=True)

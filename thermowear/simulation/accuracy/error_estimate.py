@@ -22,6 +22,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.search.face import Surface
 from ...contact.search.pairing import pair
 from ...contact.solvers.enriched_pressure import enriched_pressure
@@ -128,6 +129,8 @@ def _temperature_change(end: Snapshot) -> tuple[TemperatureChange | None, str | 
         return None, "not estimated where conductivity or expansion change with temperature"
     if heat.advection != "none":
         return None, "not estimated where a body carries heat along"
+    if isinstance(thermal.face, CoupledHeat):
+        return None, "not estimated for this many contact points"
     conductance = end.contact.conditions.conductance
     return temperature_change(end.system, heat, thermal, found, conductance), None
 

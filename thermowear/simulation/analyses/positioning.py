@@ -18,10 +18,13 @@ _LARGEST_SLOPE = 4.0
 _LONGEST = 0.4  # relative to the zone, so that its edges cannot swap
 
 
-def prepare(model: Model, comm, phases: Phases, parts: SetupCache | None = None) -> System:
+def prepare(
+    model: Model, comm, phases: Phases, parts: SetupCache | None = None, single: bool = False
+) -> System:
     """Build the system of a model, fitted to the contact edges if requested. Every rank calls.
 
-    A set-up cache is not used for a mesh that depends on the contact of the model.
+    A set-up cache is not used for a mesh that depends on the contact of the model. `single` is as
+    in `build`.
 
     Raises
     ------
@@ -29,7 +32,7 @@ def prepare(model: Model, comm, phases: Phases, parts: SetupCache | None = None)
         If it cannot be meshed, or the contact edges do not converge.
     """
     if not model.discretisation.positioning:
-        return build(model, comm, phases, parts=parts)
+        return build(model, comm, phases, parts=parts, single=single)
     expected = model.expected_zone
     zone = np.array(touching(build(model, comm, phases)) if expected is None else expected)
     before: tuple[np.ndarray, np.ndarray] | None = None

@@ -36,6 +36,8 @@ from .static import initial, stability, steady
 from .transient import TransientHistory
 
 _UNPAIRED = 1e-6
+_NOT_ESTIMATED = "the discretisation error is not estimated where bodies are solved by multigrid"
+_SKIPPED = {"all": "not estimated where bodies are solved by multigrid"}
 
 
 def run(
@@ -69,8 +71,20 @@ def run(
     """
     observer = observer or Observer()
     phases = phases or Phases(observer.phase)
-    system = prepare(model, MPI.COMM_WORLD if comm is None else comm, phases)
+    comm = MPI.COMM_WORLD if comm is None else comm
+    system = prepare(model, comm, phases, single=needs_single_solution(model, analysis))
     return solve(system, analysis, observer, saved)[1]
+
+
+def needs_single_solution(model: Model, analysis: Analysis) -> bool:
+    """Test whether an analysis solves its bodies for one load only, and needs no compliance.
+
+    That is the steady state of wear with material properties that do not depend on temperature.
+    """
+    return analysis.type == "steady" and not any(
+        material.expansion_factor or material.conductivity_factor
+        for material in model.materials.values()
+    )
 
 
 def solve(
@@ -99,6 +113,9 @@ def analyse(
 
     Starts anew, or from the checkpoint of an analysis of the same system.
     """
+    choice = system.choice
+    if (note := choice.note()) is not None:
+        observer.note(note)
     if system.pairing.unpaired > _UNPAIRED:
         percent = 100 * system.pairing.unpaired
         observer.note(
@@ -134,13 +151,16 @@ def analyse(
     mesh = mesh_checksum(system)
     named = {"title": system.model.title, "analysis": analysis.type}
     origin = {} if mesh is None else {"mesh_sha256": mesh}
-    return end, replace(result, summary=named | result.summary | origin, stopped=stopped)
+    return end, replace(result, summary=named | result.summary | choice.summary() | origin, stopped=stopped)
 
 
 def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Observer) -> Result:
     """Add discretisation error estimates to the summary; note large ones. Every rank calls."""
     if result.stopped is not None:
         return result
+    if end.system.choice.iterative:
+        observer.note(_NOT_ESTIMATED)
+        return replace(result, summary=result.summary | {"error_estimate_missing": _SKIPPED})
     try:
         estimates = estimate_errors(analysis, end)
     except (CaseError, ComputationError, LinAlgError) as error:  # the result is valid without it
@@ -193,7 +213,9 @@ class Series:
         CaseError, ComputationError
         """
         observer = observer or Observer()
-        system = prepare(model, self.comm, phases or Phases(observer.phase), self._parts)
+        single = needs_single_solution(model, analysis)
+        phases = phases or Phases(observer.phase)
+        system = prepare(model, self.comm, phases, self._parts, single)
         return balanced(analyse(system, analysis, observer)[1])
 
 

@@ -105,7 +105,8 @@ class HeatOperators:
 
     def __init__(self, system: System, conduction: Conduction, face: InterfaceHeat):
         self.conduction, self.face, self._system = conduction, face, system
-        self.distorts = system.model.interface.method.name == "condensed"
+        condensed = isinstance(face, InterfaceHeat)
+        self.distorts = condensed and system.model.interface.method.name == "condensed"
         self._exchange: tuple[bytes, HeatExchange] | None = None
         self._compliance: tuple[HeatExchange, bytes, np.ndarray] | None = None
 

@@ -11,6 +11,7 @@ import scipy.sparse as sp
 from ...bulk.bodies import Bodies, distribute
 from ...bulk.kinematics import Kinematics, kinematics_of
 from ...bulk.mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
+from ...bulk.solver_choice import SolverChoice, choose_solver
 from ...contact.operators.rigid_motion import RigidMode, hold, sliding
 from ...contact.operators.traces import gap_trace
 from ...contact.search.face import gather_faces
@@ -26,7 +27,7 @@ from .contact_points import (
 )
 from .rigid_modes import dead_load, dead_resultant, rigid_modes
 from .system import SetupCache, System, inputs
-from .thermal_system import thermal_system
+from .thermal_system import coupled_without_condensation, thermal_system
 from .worn_geometry import WornGeometry
 
 
@@ -37,6 +38,7 @@ def build(
     zone: Zone | None = None,
     parts: SetupCache | None = None,
     worn: WornGeometry | None = None,
+    single: bool = False,
 ) -> System:
     """Mesh, pair and assemble a model. Every rank calls.
 
@@ -51,6 +53,9 @@ def build(
         Set-up results of earlier systems on the same ranks, reused where the keys agree.
     worn : WornGeometry, optional
         Present node positions of the mesh; all cached parts must belong to them.
+    single : bool, optional
+        True if the analysis needs a single solution of the bodies and no compliance: large ones
+        are then solved by multigrid, and are not condensed.
 
     Raises
     ------
@@ -62,15 +67,19 @@ def build(
     kinematics = kinematics_of(model.kinematics, model.thickness, model.sector)
     with phases("mesh"):
         bodies = parts.get("bodies", made_from.mesh, lambda: _meshed(model, comm, zone, worn))
+    discretisation = model.discretisation
+    choice = choose_solver(discretisation.solver, bodies, discretisation.degree, single)
     with phases("pair"):
         pairing, basis = parts.get(
             "points", made_from.points, lambda: _paired(model, comm, kinematics, bodies, worn)
         )
+    coupled = coupled_without_condensation(choice, len(pairing.weights))
+    made_from = made_from.solved_by(choice.name, coupled)
     with phases("assemble elasticity"):
         elastic, trace = parts.get(
             "elasticity",
             made_from.elasticity,
-            lambda: elastic_system(model, kinematics, bodies, pairing),
+            lambda: elastic_system(model, kinematics, bodies, pairing, choice),
         )
     facing = facing_parts(bodies, pairing)
     dead = dead_load(model.holder, elastic)
@@ -84,7 +93,7 @@ def build(
         thermal = parts.get(
             "conduction",
             made_from.conduction,
-            lambda: thermal_system(model, heat, pairing, elastic, basis, partition, phases),
+            lambda: thermal_system(model, heat, pairing, elastic, basis, partition, phases, choice),
         )
         thermal = replace(thermal, face=replace(thermal.face, partition=partition))
     return System(
@@ -97,6 +106,7 @@ def build(
         **sliding_contact(model, kinematics, pairing, driven),
         dead_load=dead,
         thermal=thermal,
+        choice=choice,
         phases=phases,
         parts=parts,
         inputs=made_from,
@@ -134,9 +144,13 @@ def _paired(
 
 
 def elastic_system(
-    model: Model, kinematics: Kinematics, bodies: Bodies, pairing: Pairing
+    model: Model,
+    kinematics: Kinematics,
+    bodies: Bodies,
+    pairing: Pairing,
+    choice: SolverChoice,
 ) -> tuple[Elasticity, sp.csr_matrix]:
-    """Assemble and factorise the elastic bodies. Every rank calls.
+    """Assemble the elastic bodies and set up their solver. Every rank calls.
 
     Returns
     -------
@@ -150,7 +164,7 @@ def elastic_system(
         for part, m in model.materials.items()
     }
     degree = model.discretisation.degree
-    elastic = elasticity(bodies, kinematics, degree, materials, *supports(model))
+    elastic = elasticity(bodies, kinematics, degree, materials, *supports(model), choice)
     return elastic, gap_trace(elastic.space, pairing)
 
 

@@ -15,6 +15,7 @@ import scipy.sparse as sp
 
 from ...bulk.bodies import Bodies
 from ...bulk.mechanics.elasticity import Elasticity
+from ...bulk.solver_choice import SolverChoice
 from ...contact.operators.condensation import CondensedContact, Influence, influence
 from ...contact.operators.rigid_motion import RigidHolder, Sliding, hold
 from ...contact.operators.traces import vector_trace
@@ -74,6 +75,15 @@ class CacheKeys:
     elasticity: tuple
     conduction: tuple
 
+    def solved_by(self, solver: str, coupled: bool) -> CacheKeys:
+        """Keys for a solver of the bodies, with heat exchange coupled without condensation or not.
+
+        Those of condensed bodies with a direct solver are unchanged.
+        """
+        kind = (*self.elasticity, *(() if solver == "direct" else (solver,)))
+        heated = (*self.conduction, *(() if solver == "direct" else (solver,)))
+        return replace(self, elasticity=kind, conduction=(*heated, "coupled") if coupled else heated)
+
 
 def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
     """Cache keys of a model meshed for a zone (by default the expected contact zone)."""
@@ -121,6 +131,8 @@ class System:
     dead_load : ndarray or None, shape (n_owned,)
         Nodal forces of the surface loads [N].
     thermal : ThermalSystem or None
+    choice : SolverChoice
+        Solver of the bodies.
     phases : Phases
     parts : SetupCache
         Set-up results shared with other systems.
@@ -143,6 +155,7 @@ class System:
     speed: np.ndarray
     dead_load: np.ndarray | None
     thermal: ThermalSystem | None
+    choice: SolverChoice
     phases: Phases
     parts: SetupCache
     inputs: CacheKeys

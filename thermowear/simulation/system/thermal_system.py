@@ -24,7 +24,9 @@ from ...bulk.heat.varying import (
 )
 from ...bulk.kinematics import Kinematics
 from ...bulk.mechanics.elasticity import Elasticity
+from ...bulk.solver_choice import SolverChoice
 from ...contact.operators.condensation import bath_matrix, condense_heat
+from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.operators.heat import InterfaceHeat
 from ...contact.operators.traces import value_trace
 from ...contact.search.pairing import Pairing
@@ -32,6 +34,10 @@ from ...laws.time_course import TimeFunction
 from ...model.conditions import Heat
 from ...model.model import Model
 from ...timer import Phases
+
+
+_MOST_CONDENSED = 4000
+"""Largest number of contact points for which conduction is condensed for a single solution."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +117,8 @@ class ThermalSystem:
         G: nodal forces per nodal rise [N/K].
     loads : ThermalLoads
         Thermal loads beside friction.
-    face : InterfaceHeat
+    face : InterfaceHeat or CoupledHeat
+        The latter for many contact points or multigrid, where a single solution is needed.
     ambient : float
         Ambient temperature [K].
     initial : float
@@ -125,7 +132,7 @@ class ThermalSystem:
     conduction: Conduction
     load: PETSc.Mat
     loads: ThermalLoads
-    face: InterfaceHeat
+    face: InterfaceHeat | CoupledHeat
     ambient: float
     initial: float
     diffusivity: float
@@ -154,8 +161,9 @@ def thermal_system(
     basis: np.ndarray,
     partition: float | np.ndarray,
     phases: Phases,
+    choice: SolverChoice,
 ) -> ThermalSystem:
-    """Assemble and condense conduction. Every rank calls."""
+    """Assemble conduction, and condense it if need be. Every rank calls."""
     bodies, kinematics = elastic.bodies, elastic.kinematics
     with phases("assemble conduction"):
         space = lagrange_space(bodies.mesh, model.discretisation.degree)
@@ -177,17 +185,28 @@ def thermal_system(
             given,
             bath,
             _passage(model, heat),
+            choice,
         )
         load = elastic.thermal_load(space)
         loads = thermal_loads(model, heat, bodies, kinematics, conducting)
         conducting, expansions = _varying(model, heat, conducting, elastic, materials)
-    with phases("condense conduction"):
-        face = condense_heat(conducting, pairing.weights, basis, traces, shift, partition)
+    face: InterfaceHeat | CoupledHeat
+    at_points = pairing.weights, basis, traces, shift, partition
+    if coupled_without_condensation(choice, len(pairing.weights)):
+        face = CoupledHeat(*at_points, conducting)
+    else:
+        with phases("condense conduction"):
+            face = condense_heat(conducting, *at_points)
     diffusivity = max(m.conductivity / (m.capacity or np.inf) for m in materials.values())
     initial = 0.0 if heat.initial is None else heat.initial - heat.ambient
     return ThermalSystem(
         conducting, load, loads, face, heat.ambient, initial, diffusivity, expansions
     )
+
+
+def coupled_without_condensation(choice: SolverChoice, points: int) -> bool:
+    """Test whether heat exchange is solved for one state of the contact, without condensation."""
+    return choice.single and (choice.iterative or points > _MOST_CONDENSED)
 
 
 def _varying(

@@ -1,0 +1,170 @@
+"""Choice of the linear solver of the bodies by their size: direct (MUMPS) or multigrid.
+
+Bodies in space are factorised as long as the factor fits into the memory. Sections always are.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from petsc4py import PETSc
+
+import numpy as np
+from dolfinx import fem
+
+from .bodies import Bodies
+from .direct_solver import DirectSolver
+from .field import reference_element
+from .multigrid_solver import MultigridSolver
+
+AnySolver = DirectSolver | MultigridSolver
+"""Solver of the equations of the bodies; both have the same methods."""
+
+_MEASURED = 61_605, 0.49e9, 1.40
+"""Unknowns and bytes of a factor in space, and its growth exponent: measured for bodies of one
+block with elements of degree 2, from 6e4 to 1.8e5 unknowns."""
+_PART = 0.4
+"""Part of the available memory that a factor may take: a second one (of heat), the matrices and
+the workspace of the factorisation need the rest."""
+_MANY = 60_000
+"""Unknowns from which a single solution is faster by multigrid than by a factorisation."""
+_LOW_DEGREE = 3
+"""Highest degree for which multigrid converges as fast as measured."""
+_LIMIT = "/sys/fs/cgroup/memory.max"
+
+
+@dataclass(frozen=True)
+class SolverChoice:
+    """Linear solver of the bodies, and the estimate that it follows from.
+
+    Attributes
+    ----------
+    name : str
+        ``"direct"`` or ``"multigrid"``.
+    unknowns : int
+        Unknowns of the displacement.
+    factor_memory : float
+        Estimated memory of a factor of the stiffness; NaN in a section [bytes].
+    available : float
+        Memory available on this machine [bytes].
+    single : bool
+        True if the analysis needs a single solution, and no compliance.
+    reason : str
+    """
+
+    name: str = "direct"
+    unknowns: int = 0
+    factor_memory: float = float("nan")
+    available: float = float("nan")
+    single: bool = False
+    reason: str = "default"
+
+    @property
+    def iterative(self) -> bool:
+        """True for multigrid."""
+        return self.name == "multigrid"
+
+    def note(self) -> str | None:
+        """Line for the console; None for small bodies and sections, which are factorised."""
+        if not self.iterative and not self.unknowns >= _MANY:
+            return None
+        return (
+            f"solver: {self.name} ({self.reason}); {self.unknowns} unknowns, estimated memory of a "
+            f"factor {self.factor_memory / 1e9:.2g} GB of {self.available / 1e9:.2g} GB available"
+        )
+
+    def summary(self) -> dict:
+        """Keys of ``summary.json``."""
+        known = np.isfinite(self.factor_memory)
+        memory = float(self.factor_memory) if known else None
+        return {"solver": self.name, "factor_memory_estimate_bytes": memory}
+
+
+def choose_solver(asked: str, bodies: Bodies, degree: int, single: bool) -> SolverChoice:
+    """Choose the linear solver of bodies. Every rank calls.
+
+    Parameters
+    ----------
+    asked : str
+        ``"auto"``, ``"direct"`` or ``"multigrid"``; sections stay direct.
+    bodies : Bodies
+    degree : int
+        Degree of the displacement.
+    single : bool
+        True if the analysis needs a single solution and no compliance.
+    """
+    comm = bodies.mesh.comm
+    if bodies.mesh.topology.dim == 2:
+        return SolverChoice(reason="section")
+    unknowns = count_unknowns(bodies.mesh, degree)
+    memory, available = factor_memory(unknowns), comm.bcast(available_memory(), root=0)
+    name, reason = asked, "as given"
+    if asked == "auto":
+        name, reason = "direct", "the factor fits into the memory"
+        if memory > _PART * available:
+            name, reason = "multigrid", "the factor would not fit into the memory"
+        elif single and unknowns >= _MANY and degree <= _LOW_DEGREE:
+            name, reason = "multigrid", "faster for a single solution"
+    return SolverChoice(name, unknowns, memory, available, single, reason)
+
+
+def count_unknowns(mesh, degree: int) -> int:
+    """Number of displacement unknowns of a degree on a mesh. Every rank calls."""
+    element, topology = reference_element(mesh, degree), mesh.topology
+    count = 0
+    for dim, of_entities in enumerate(element.num_entity_dofs):
+        if any(of_entities):
+            topology.create_entities(dim)
+            count += of_entities[0] * topology.index_map(dim).size_global
+    return int(count * mesh.geometry.dim)
+
+
+def factor_memory(unknowns: int) -> float:
+    """Estimated memory of the factor of a stiffness in space [bytes]."""
+    reference, size, exponent = _MEASURED
+    return size * (unknowns / reference) ** exponent
+
+
+def available_memory() -> float:
+    """Memory available to this process: of the machine, or of its control group [bytes]."""
+    free = float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    try:
+        lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
+        sizes = {name: value for name, _, value in (line.partition(":") for line in lines)}
+        free = 1024.0 * float(sizes["MemAvailable"].split()[0])
+    except (OSError, KeyError, ValueError):
+        pass  # not Linux
+    try:
+        return min(free, float(Path(_LIMIT).read_text(encoding="ascii")))
+    except (OSError, ValueError):  # no control group, or without limit
+        return free
+
+
+def linear_solver(
+    choice: SolverChoice,
+    matrix: PETSc.Mat,
+    space: fem.FunctionSpace,
+    fixed: np.ndarray,
+    symmetry: str = "definite",
+    coarse: Callable[[fem.FunctionSpace], PETSc.Mat] | None = None,
+) -> AnySolver:
+    """Set up the chosen solver of a matrix. Every rank calls.
+
+    Parameters
+    ----------
+    choice : SolverChoice
+    matrix : petsc4py.PETSc.Mat
+        Assembled, with the rows and columns of fixed values eliminated.
+    space : dolfinx.fem.FunctionSpace
+    fixed : ndarray of bool, shape (n_owned,)
+    symmetry : str
+        See `DirectSolver`; unsymmetric matrices are always factorised.
+    coarse : callable, optional
+        See `MultigridSolver`.
+    """
+    if choice.iterative and symmetry == "definite":
+        return MultigridSolver(matrix, space, fixed, coarse)
+    return DirectSolver(matrix, symmetry, dim=space.mesh.topology.dim)

@@ -13,7 +13,8 @@ from ..results import FIELDS
 from .files import atomic_write, final_name
 from .tables import write_points
 
-_CELLS = {3: "triangle", 4: "quad", 8: "hexahedron"}
+_CELLS = {(2, 3): "triangle", (2, 4): "quad", (3, 4): "tetra", (3, 8): "hexahedron"}
+"""Types of cells by dimension and number of corners."""
 _INDEX = "frames.pvd"
 _KINDS = {"fields": ".vtu", "interface": ".csv", "track": ".csv"}
 """Files of a frame with their endings."""
@@ -151,7 +152,7 @@ def write_fields(path: Path, fields) -> None:
     data = {FIELDS[name].header: value for name, value in values.items()}
     body = np.repeat(fields.body, len(fields.pieces))
     mesh = meshio.Mesh(
-        _three(fields.points.reshape(-1, gdim)), [(_CELLS[corners], pieces)], data, {"body": [body]}
+        _three(fields.points.reshape(-1, gdim)), [(_CELLS[gdim, corners], pieces)], data, {"body": [body]}
     )
     with atomic_write(path) as draft:
         mesh.write(draft, file_format="vtu")

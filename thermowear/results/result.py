@@ -56,8 +56,9 @@ class BodyFields:
     Attributes
     ----------
     points : ndarray, shape (n_cells, n_points, gdim) [m]
-    pieces : ndarray of int, shape (n_pieces, 3 or 4)
-        Small triangles or quadrilaterals between the points of one cell.
+    pieces : ndarray of int, shape (n_pieces, n_corners)
+        Small triangles or quadrilaterals between the points of one cell; in space tetrahedra or
+        hexahedra.
     body : ndarray of int, shape (n_cells,)
         Number of the body, 1 or 2.
     displacement : ndarray, shape (n_cells, n_points, gdim) [m]

@@ -18,6 +18,7 @@ from ...errors import ComputationError
 from ...parallel import sum_over_ranks
 from ..direct_solver import multiply
 from ..field import without_fixed
+from ..multigrid_solver import MultigridSolver
 from ..solver_choice import AnySolver, SolverChoice, linear_solver
 from .advection import Advection
 from .even_paths import EvenPaths
@@ -142,6 +143,8 @@ class Conduction:
             self.even,
             self.choice,
         )
+        if isinstance(factor, MultigridSolver) and isinstance(self.factor, MultigridSolver):
+            factor.iterations = self.factor.iterations  # counted together
         return replace(self, bath=bath, factor=factor)
 
     def stored_heat(self, rise: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ from mpi4py import MPI
 from numpy.linalg import LinAlgError
 
 from ...balances import judged
+from ...bulk.multigrid_solver import MultigridSolver
 from ...errors import CaseError, ComputationError
 from ...model.analyses import (
     Analysis,
@@ -148,10 +149,24 @@ def analyse(
         observer.note(note)
     errors = (one for one in found if isinstance(one, ComputationError))
     stopped = result.stopped or next(errors, None)
-    mesh = mesh_checksum(system)
+    mesh, solved = mesh_checksum(system), choice.summary() | _iterations(system)
     named = {"title": system.model.title, "analysis": analysis.type}
     origin = {} if mesh is None else {"mesh_sha256": mesh}
-    return end, replace(result, summary=named | result.summary | choice.summary() | origin, stopped=stopped)
+    return end, replace(result, summary=named | result.summary | solved | origin, stopped=stopped)
+
+
+def _iterations(system: System) -> dict[str, int]:
+    """Largest numbers of multigrid iterations of a solution, if there are any."""
+    thermal = system.thermal
+    factors = {
+        "elasticity": system.elastic.factor,
+        "conduction": None if thermal is None else thermal.conduction.factor,
+    }
+    return {
+        f"multigrid_iterations_{name}": max(factor.iterations)
+        for name, factor in factors.items()
+        if isinstance(factor, MultigridSolver) and factor.iterations
+    }
 
 
 def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Observer) -> Result:

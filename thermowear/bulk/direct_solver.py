@@ -133,3 +133,13 @@ def multiply(matrix: PETSc.Mat, values: np.ndarray) -> np.ndarray:
     x.setArray(values)
     matrix.mult(x, y)
     return y.getArray().copy()
+
+
+def eliminate(matrix: PETSc.Mat, fixed: np.ndarray) -> None:
+    """Eliminate rows and columns of fixed values (n_owned,), in place. Every rank calls.
+
+    Their diagonal entries become the largest one of the matrix.
+    """
+    rows = (np.flatnonzero(fixed) + matrix.getOwnershipRange()[0]).astype(PETSc.IntType)
+    largest = float(np.abs(matrix.getDiagonal().getArray()).max(initial=0.0))
+    matrix.zeroRowsColumns(rows, diag=max(matrix.comm.tompi4py().allgather(largest)))

@@ -152,7 +152,10 @@ def write_fields(path: Path, fields) -> None:
     data = {FIELDS[name].header: value for name, value in values.items()}
     body = np.repeat(fields.body, len(fields.pieces))
     mesh = meshio.Mesh(
-        _three(fields.points.reshape(-1, gdim)), [(_CELLS[gdim, corners], pieces)], data, {"body": [body]}
+        _three(fields.points.reshape(-1, gdim)),
+        [(_CELLS[gdim, corners], pieces)],
+        data,
+        {"body": [body]},
     )
     with atomic_write(path) as draft:
         mesh.write(draft, file_format="vtu")

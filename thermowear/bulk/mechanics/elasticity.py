@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property, partial
 
 from petsc4py import PETSc
 
@@ -15,7 +16,7 @@ from dolfinx import mesh as dmesh
 
 from ..bodies import Bodies
 from ..compiled import assembled_matrix, surface_area
-from ..direct_solver import multiply
+from ..direct_solver import eliminate, multiply
 from ..field import lagrange_space, owned, without_fixed
 from ..kinematics import Kinematics, section_measure
 from ..solver_choice import AnySolver, SolverChoice, linear_solver
@@ -40,10 +41,10 @@ class Elasticity:
     kinematics : Kinematics
     space : dolfinx.fem.FunctionSpace
         Displacement space [m].
-    stiffness : petsc4py.PETSc.Mat
-        Stiffness without supports: its residual contains the support reactions.
     fixed : ndarray of bool, shape (n_owned,)
         Mask of values held at zero.
+    support_rows : petsc4py.PETSc.Mat
+        Rows of the stiffness of these values, for the support reactions.
     factor : DirectSolver or MultigridSolver
         Solver of the supported stiffness.
     lame : tuple of dolfinx.fem.Function
@@ -53,10 +54,15 @@ class Elasticity:
     bodies: Bodies
     kinematics: Kinematics
     space: fem.FunctionSpace
-    stiffness: PETSc.Mat
     fixed: np.ndarray
+    support_rows: PETSc.Mat
     factor: AnySolver
     lame: tuple[fem.Function, fem.Function, fem.Function]
+
+    @cached_property
+    def stiffness(self) -> PETSc.Mat:
+        """Stiffness without supports, assembled on first use. Every rank calls."""
+        return _stiffness(self.bodies, self.kinematics, self.lame, self.space)
 
     def stress(self, u, rise=None):
         """Stress of a displacement and a temperature rise, 3 x 3 [Pa]."""
@@ -108,7 +114,9 @@ class Elasticity:
 
     def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Support reactions [N], owned rows; zero in the free values."""
-        return np.where(self.fixed, multiply(self.stiffness, displacement) - loads, 0.0)
+        result = np.zeros(len(self.fixed))
+        result[self.fixed] = multiply(self.support_rows, displacement) - loads[self.fixed]
+        return result
 
     def compressibility(self) -> float:
         """Smallest ``1 - 2 ν = μ / (λ + μ)`` of the bodies; every rank calls."""
@@ -174,26 +182,37 @@ def elasticity(
     space = lagrange_space(mesh, degree, mesh.geometry.dim)
     lame = _lame(bodies, kinematics, materials)
 
-    def assembled(space: fem.FunctionSpace) -> PETSc.Mat:
-        u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
-        measure = section_measure(mesh, space.ufl_element().degree)
-        return assembled_matrix(_virtual_work(mesh, kinematics, lame, u, δu, measure))
-
-    stiffness = assembled(space)
+    assembled = partial(_stiffness, bodies, kinematics, lame)
+    matrix = assembled(space)
     fixed = fixed_values(bodies, kinematics, space, clamped, {0: symmetric, 1: rollers})
-    matrix = supported(stiffness, fixed)
+    support_rows = _rows(matrix, fixed)
+    eliminate(matrix, fixed)
     factor = linear_solver(choice or SolverChoice(), matrix, space, fixed, coarse=assembled)
-    return Elasticity(bodies, kinematics, space, stiffness, fixed, factor, lame)
+    return Elasticity(bodies, kinematics, space, fixed, support_rows, factor, lame)
+
+
+def _stiffness(bodies: Bodies, kinematics: Kinematics, lame, space: fem.FunctionSpace) -> PETSc.Mat:
+    """Stiffness without supports in a space. Every rank calls."""
+    u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
+    measure = section_measure(bodies.mesh, space.ufl_element().degree)
+    return assembled_matrix(_virtual_work(bodies.mesh, kinematics, lame, u, δu, measure))
 
 
 def supported(stiffness: PETSc.Mat, fixed: np.ndarray) -> PETSc.Mat:
     """Copy of a stiffness with rows and columns of fixed values eliminated. Every rank calls."""
     result = stiffness.copy()
-    first = stiffness.getOwnershipRange()[0]
-    rows = (np.flatnonzero(fixed) + first).astype(PETSc.IntType)
-    largest = float(np.abs(stiffness.getDiagonal().getArray()).max(initial=0.0))
-    result.zeroRowsColumns(rows, diag=max(stiffness.comm.tompi4py().allgather(largest)))
+    eliminate(result, fixed)
     return result
+
+
+def _rows(matrix: PETSc.Mat, chosen: np.ndarray) -> PETSc.Mat:
+    """Rows of a matrix chosen by a mask of owned values. Every rank calls."""
+    (first, _), (start, end) = matrix.getOwnershipRange(), matrix.getOwnershipRangeColumn()
+    rows = (np.flatnonzero(chosen) + first).astype(PETSc.IntType)
+    return matrix.createSubMatrix(
+        PETSc.IS().createGeneral(rows, matrix.comm),
+        PETSc.IS().createStride(end - start, start, 1, comm=matrix.comm),
+    )
 
 
 def _virtual_work(mesh, kinematics: Kinematics, lame, u, δu, measure):

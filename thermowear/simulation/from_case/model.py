@@ -48,9 +48,7 @@ def model_of(case: Case) -> Model:
         interfaces=(_interface(case),),
         holders=(_holder(case),),
         meshes=CaseMeshes(case.model, geometry, case.mesh, case),
-        discretisation=Discretisation(
-            case.mesh.degree, case.contact.positioning, case.mesh.solver
-        ),
+        discretisation=Discretisation(case.mesh.degree, case.contact.positioning, case.mesh.solver),
         motion=_motion(case),
         heat=None if case.heat is None else Heat(**attributes(Heat, case.heat)),
         thickness=geometry.thickness_factor,

@@ -82,7 +82,9 @@ class CacheKeys:
         """
         kind = (*self.elasticity, *(() if solver == "direct" else (solver,)))
         heated = (*self.conduction, *(() if solver == "direct" else (solver,)))
-        return replace(self, elasticity=kind, conduction=(*heated, "coupled") if coupled else heated)
+        return replace(
+            self, elasticity=kind, conduction=(*heated, "coupled") if coupled else heated
+        )
 
 
 def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:

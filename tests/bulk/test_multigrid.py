@@ -1,0 +1,121 @@
+"""Multigrid solver against the direct one, and the choice between them."""
+
+import numpy as np
+import pytest
+
+from thermowear.bulk import solver_choice
+from thermowear.bulk.bodies import distribute
+from thermowear.bulk.compiled import nodal_loads
+from thermowear.bulk.field import lagrange_space, total
+from thermowear.bulk.kinematics import Spatial
+from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.multigrid_solver import MultigridSolver
+from thermowear.bulk.solver_choice import SolverChoice, choose_solver, count_unknowns, factor_memory
+from thermowear.errors import ComputationError
+
+from ..conftest import two_blocks
+from ..contact.solids import COMM, two_solids
+
+MULTIGRID = SolverChoice("multigrid")
+ENDS = ["upper_end", "lower_end"]
+
+
+def solids(n=2, cell_type="tetrahedron", order=1):
+    tagged = two_solids(((n, n, n), (n + 1, n, n)), order, cell_type=cell_type)
+    return distribute(tagged if COMM.rank == 0 else None, COMM)
+
+
+def elastic(bodies, degree, choice, clamped=ENDS, **supports):
+    materials = {"upper": ElasticMaterial(2e11, 0.3), "lower": ElasticMaterial(1e10, 0.4)}
+    return elasticity(bodies, Spatial(), degree, materials, clamped, choice=choice, **supports)
+
+
+def pulled(problem):
+    """Loads that bend and press both bodies."""
+    on_face = problem.surface_work("upper_face", np.array([1.0, 2.0, -5.0]))
+    on_side = problem.surface_work("lower_high_x", np.array([1.0, 0.0, -3.0]))
+    return nodal_loads(problem.space, on_face) + nodal_loads(problem.space, on_side)
+
+
+@pytest.mark.parametrize(
+    ("cell_type", "order", "degree"),
+    [
+        ("tetrahedron", 1, 1),
+        ("tetrahedron", 1, 2),
+        ("tetrahedron", 2, 2),
+        ("hexahedron", 1, 2),
+        ("hexahedron", 1, 3),
+    ],
+)
+def test_displacements_of_the_direct_solver(cell_type, order, degree):
+    """requirement: displacements agree to 1e-7, with rollers and planes of symmetry."""
+    bodies = solids(2, cell_type, order)
+    supports = {"symmetric": ("upper_low_x",), "rollers": ("lower_low_y",)}
+    direct = elastic(bodies, degree, None, **supports)
+    multigrid = elastic(bodies, degree, MULTIGRID, **supports)
+    assert isinstance(multigrid.factor, MultigridSolver)
+    expected = direct.solve(pulled(direct))
+    found = multigrid.solve(np.column_stack([pulled(multigrid), -2 * pulled(multigrid)]))
+    tolerance = 1e-7 * np.abs(expected).max()
+    np.testing.assert_allclose(found[:, 0], expected, rtol=0.0, atol=tolerance)
+    np.testing.assert_allclose(found[:, 1], -2 * expected, rtol=0.0, atol=2 * tolerance)
+    assert max(multigrid.factor.iterations) <= 30
+
+
+def test_iterations_do_not_grow_with_the_number_of_unknowns():
+    """requirement: at most 18 iterations for quadratic tetrahedra, coarse or fine."""
+    counts = []
+    for n in (3, 6):
+        problem = elastic(solids(n), 2, MULTIGRID)
+        problem.solve(pulled(problem))
+        counts += problem.factor.iterations
+    assert max(counts) <= 18, counts
+
+
+def test_a_body_without_support_is_an_error():
+    """requirement: no wrong displacements where the stiffness is singular."""
+    problem = elastic(solids(), 2, MULTIGRID, clamped=["upper_end"])
+    with pytest.raises(ComputationError, match="multigrid solver has not converged"):
+        problem.solve(pulled(problem))
+
+
+@pytest.mark.parametrize("cell_type", ["tetrahedron", "hexahedron"])
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_unknowns_are_counted_without_a_space(cell_type, degree):
+    """requirement: the number of unknowns of the choice is that of the space."""
+    mesh = solids(2, cell_type).mesh
+    assert count_unknowns(mesh, degree) == total(lagrange_space(mesh, degree, 3))
+
+
+@pytest.mark.parametrize(
+    ("unknowns", "measured"), [(61_605, 0.49e9), (136_857, 1.43e9), (176_967, 2.1e9)]
+)
+def test_the_estimated_memory_is_the_measured_one(unknowns, measured):
+    """requirement: estimate of a factor within 10 % of measurements."""
+    assert factor_memory(unknowns) == pytest.approx(measured, rel=0.1)
+
+
+def test_the_solver_is_chosen_by_memory_and_size(monkeypatch):
+    """requirement: multigrid where a factor does not fit, or for a single solution of many."""
+    bodies = solids()
+    assert choose_solver("auto", bodies, 2, True).name == "direct"
+    assert choose_solver("multigrid", bodies, 2, False).iterative
+    assert 1e8 < choose_solver("auto", bodies, 2, True).available < 1e14
+    monkeypatch.setattr(solver_choice, "_MANY", 100)
+    assert choose_solver("auto", bodies, 2, True).iterative
+    assert not choose_solver("auto", bodies, 2, False).iterative
+    assert not choose_solver("direct", bodies, 2, True).iterative
+    monkeypatch.setattr(solver_choice, "available_memory", lambda: 1e6)
+    choice = choose_solver("auto", bodies, 2, False)
+    assert choice.iterative
+    assert "would not fit" in choice.note()
+    assert not choose_solver("direct", bodies, 2, False).iterative
+
+
+def test_sections_are_factorised():
+    """requirement: no multigrid in sections."""
+    bodies = distribute(two_blocks() if COMM.rank == 0 else None, COMM)
+    choice = choose_solver("multigrid", bodies, 3, True)
+    assert not choice.iterative
+    assert choice.note() is None
+    assert choice.summary() == {"solver": "direct", "factor_memory_estimate_bytes": None}

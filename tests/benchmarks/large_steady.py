@@ -56,7 +56,7 @@ def measured(thousands: float, options: argparse.Namespace) -> dict:
 
     single = needs_single_solution(model, analysis)
     system = prepare(model, MPI.COMM_WORLD, phases, single=single)
-    end, result = solve(system, analysis, observer)
+    _, result = solve(system, analysis, observer)
     summary = result.summary
     names = (
         "dofs_displacement",

@@ -14,7 +14,7 @@ from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
-from .heat import InterfaceHeat, ThermalDistortion
+from .heat import FaceHeat, InterfaceHeat, ThermalDistortion
 from .pressure import Basis, PressureSpace, scaled
 from .rigid_motion import RigidHolder
 from .traces import distributed, transpose_product
@@ -178,7 +178,7 @@ def condense_heat(
 
 
 def condense_distortion(
-    conduction: Conduction, per_rise: np.ndarray, face: InterfaceHeat
+    conduction: Conduction, per_rise: np.ndarray, face: FaceHeat
 ) -> ThermalDistortion:
     """Condense ``Ψᵀ w B K⁻¹ G K_T⁻¹ Eᵀ w``: weak gap from heat at the contact.
 
@@ -190,7 +190,7 @@ def condense_distortion(
     conduction : Conduction
     per_rise : ndarray, shape (n_owned, m)
         Weak gap per nodal rise, see `Influence` [m³/K].
-    face : InterfaceHeat
+    face : FaceHeat
     """
     mesh, found = conduction.space.mesh, []
     for columns in blocks(per_rise.shape[1], mesh.topology.dim):

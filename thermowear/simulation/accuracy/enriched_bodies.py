@@ -112,6 +112,7 @@ def temperature_change(
 ) -> TemperatureChange:
     """Change of steady temperatures by the next degree for a given friction heat; collective."""
     conduction, face, pairing = thermal.conduction, thermal.face, system.pairing
+    assert isinstance(face, InterfaceHeat)
     problem = _conducting(system, heat, thermal)
     traces = [
         sp.vstack([trace, value_trace(problem.surplus, side)])

@@ -116,7 +116,7 @@ class GrowthModel:
         steps = self._steps
         bodies = steps.operators if rate == 0.0 else steps.operators_within(1 / rate)
         face = bodies.face
-        exchange = face.exchange(self._conditions.conductance)
+        exchange = bodies.condensed_exchange(self._conditions.conductance)
         nodal = sum(
             trace @ (face.weights[:, None] * (share @ self._friction))
             for trace, share in zip(face.traces, exchange.per_friction_heat, strict=True)

@@ -135,7 +135,7 @@ class PerturbedContact:
         """Weak thermal opening per pressure coefficient, H, at the given speed."""
         face, conductance = self._thermal_bodies.face, self._conditions.conductance
         bodies = HeatOperators(self._system, self._thermal_bodies.conduction, face)
-        per_heat = bodies.distortion.per_friction_heat(face.exchange(conductance))
+        per_heat = bodies.distortion.per_friction_heat(bodies.condensed_exchange(conductance))
         return per_heat @ scaled(self._conditions.heating, self._system.basis)
 
     @cached_property

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...bulk.heat.conduction import Conduction
 from ...contact.operators.condensation import condense_distortion, condense_heat
+from ...contact.operators.coupled_heat import CoupledExchange, CoupledHeat
 from ...contact.operators.heat import (
     BaselineResponse,
     HeatExchange,
@@ -26,6 +27,8 @@ from ..system.conditions import InterfaceConditions
 from ..system.system import SetupCache, System
 from ..system.thermal_system import ThermalLoad, ThermalSystem
 
+AnyFace = InterfaceHeat | CoupledHeat
+AnyExchange = HeatExchange | CoupledExchange
 _ROUNDING = 1e-3
 """Least scale of the heat balance, relative to the initial heat content (rounding)."""
 
@@ -103,11 +106,11 @@ class HeatOperators:
     steps: a cycle of references would keep it in memory after its mesh has been discarded.
     """
 
-    def __init__(self, system: System, conduction: Conduction, face: InterfaceHeat):
+    def __init__(self, system: System, conduction: Conduction, face: AnyFace):
         self.conduction, self.face, self._system = conduction, face, system
         condensed = isinstance(face, InterfaceHeat)
         self.distorts = condensed and system.model.interface.method.name == "condensed"
-        self._exchange: tuple[bytes, HeatExchange] | None = None
+        self._exchange: tuple[bytes, AnyExchange] | None = None
         self._compliance: tuple[HeatExchange, bytes, np.ndarray] | None = None
 
     @cached_property
@@ -138,13 +141,19 @@ class HeatOperators:
         per_rise = self.per_rise if self.distorts else None
         return baseline_response(rise, self.face.traces, self._system.comm, per_rise)
 
-    def exchange(self, conductance: np.ndarray) -> HeatExchange:
+    def exchange(self, conductance: np.ndarray) -> AnyExchange:
         """Heat exchange of the faces for conductances at the points, shape (n,)."""
         key = conductance.tobytes()
         if self._exchange is None or self._exchange[0] != key:
             self._exchange = None  # frees its memory
             self._exchange = key, self.face.exchange(conductance)
         return self._exchange[1]
+
+    def condensed_exchange(self, conductance: np.ndarray) -> HeatExchange:
+        """Heat exchange of condensed bodies, which contact solvers need."""
+        exchange = self.exchange(conductance)
+        assert isinstance(exchange, HeatExchange)
+        return exchange
 
     def compliance(self, exchange: HeatExchange, heating: np.ndarray, basis: np.ndarray):
         """Thermal compliance ``H diag(mu v) Ψ`` for a heating ``mu v`` (n,) [m/s], (m, m)."""
@@ -196,7 +205,7 @@ class HeatStep:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Weak gap per pressure coefficient by friction heat (m, m), by other heat (m,) [m³]."""
         operators = self.operators
-        exchange = operators.exchange(conditions.conductance)
+        exchange = operators.condensed_exchange(conditions.conductance)
         if self._gap is None or self._gap[0] is not exchange:
             self._gap = exchange, operators.distortion.baseline_gap(exchange, self.baseline)
         return operators.compliance(exchange, conditions.heating, basis), self._gap[1]

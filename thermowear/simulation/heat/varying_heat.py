@@ -16,7 +16,6 @@ from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.varying import VaryingExpansion
 from ...contact.operators.heat import (
     BaselineResponse,
-    InterfaceHeat,
     ThermalState,
     baseline_response,
 )
@@ -24,7 +23,7 @@ from ...errors import ComputationError
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from ..system.thermal_system import ThermalLoad, ThermalSystem
-from .heat_steps import HeatOperators, HeatStep, HeatSteps
+from .heat_steps import AnyFace, HeatOperators, HeatStep, HeatSteps
 
 _ITERATIONS = 60
 _TOLERANCE = 1e-11
@@ -38,7 +37,7 @@ class TangentOperators(HeatOperators):
     """Operators linearised at a rise (n_owned,) [K]; None: at the ambient temperature."""
 
     def __init__(
-        self, system: System, conduction: Conduction, face: InterfaceHeat, at: np.ndarray | None
+        self, system: System, conduction: Conduction, face: AnyFace, at: np.ndarray | None
     ):
         super().__init__(system, conduction, face)
         self._at = at

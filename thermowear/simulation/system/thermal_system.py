@@ -35,7 +35,6 @@ from ...model.conditions import Heat
 from ...model.model import Model
 from ...timer import Phases
 
-
 _MOST_CONDENSED = 4000
 """Largest number of contact points for which conduction is condensed for a single solution."""
 

@@ -2,11 +2,19 @@
 
 import numpy as np
 import pytest
+import ufl
 
 from thermowear.bulk import solver_choice
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.compiled import nodal_loads
+from thermowear.bulk.compiled import assembled_matrix, nodal_loads
 from thermowear.bulk.field import lagrange_space, total
+from thermowear.bulk.heat.advection import Passage
+from thermowear.bulk.heat.heat_equation import (
+    ThermalMaterial,
+    conduction,
+    surface_heat,
+    transferring,
+)
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.multigrid_solver import MultigridSolver
@@ -119,3 +127,34 @@ def test_sections_are_factorised():
     assert not choice.iterative
     assert choice.note() is None
     assert choice.summary() == {"solver": "direct", "factor_memory_estimate_bytes": None}
+
+
+@pytest.mark.parametrize("speed", [0.01, 1.0, 1000.0])
+def test_heat_carried_along(speed):
+    """requirement: temperatures and adjoints of the direct solver at any Péclet number, to 1e-7."""
+    bodies, kinematics = solids(3), Spatial()
+    space = lagrange_space(bodies.mesh, 2)
+    T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
+    (form,) = transferring(bodies, kinematics, {"upper_face": 1e4, "lower_face": 1e4})
+    materials = {"upper": ThermalMaterial(5.0, 3.5e6), "lower": ThermalMaterial(50.0, 3.5e6)}
+    cooling, passage = {"upper_end": 500.0}, Passage(("lower",), None, -speed, spread=False)
+    both = [
+        conduction(
+            bodies,
+            kinematics,
+            space,
+            materials,
+            cooling,
+            {"lower_end": 20.0},
+            assembled_matrix(form(T, δT)),
+            passage,
+            choice,
+        )
+        for choice in (None, MULTIGRID)
+    ]
+    heat = surface_heat(bodies, kinematics, space, "lower_face", 1e5)
+    assert isinstance(both[1].factor, MultigridSolver)
+    for answer in (lambda c: c.solve(heat), lambda c: c.adjoint_response(heat[:, None])):
+        expected, found = map(answer, both)
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-7 * np.abs(expected).max())
+    assert max(both[1].factor.iterations) <= 30

@@ -1,14 +1,17 @@
-"""Conjugate gradients with p-multigrid, for bodies in space too large to be factorised.
+"""Krylov methods with p-multigrid, for bodies in space too large to be factorised.
 
 Two levels of degree: the elements of the problem and linear ones on the same mesh, for which
 smoothed aggregation (GAMG) continues with the rigid-body motions, or constants, as near-nullspace.
-Smoothers are Chebyshev polynomials of the point-block Jacobi method, on lower levels of symmetric
-Gauss-Seidel sweeps. Iterations hardly grow with the number of unknowns.
+The method is that of conjugate gradients, with Chebyshev polynomials as smoothers: of point-block
+Jacobi, on lower levels of symmetric Gauss-Seidel sweeps. Where heat is carried along, and the matrix
+is not symmetric, it is flexible GMRES, smoothed by GMRES with incomplete factors. Iterations hardly
+grow with the number of unknowns.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 
 from petsc4py import PETSc
 
@@ -37,10 +40,27 @@ _OPTIONS = {
     "mg_coarse_mg_levels_pc_type": "sor",
 }
 """Options of PETSc; measured as the best of several on bodies of 6e4 to 1e6 unknowns."""
+_UNSYMMETRIC_OPTIONS = {
+    "mg_levels_ksp_type": "gmres",
+    "mg_levels_ksp_max_it": _SMOOTHING_STEPS,
+    "mg_levels_ksp_norm_type": "none",
+    "mg_levels_pc_type": "bjacobi",
+    "mg_levels_sub_pc_type": "ilu",
+    "mg_coarse_ksp_type": "preonly",
+    "mg_coarse_pc_type": "gamg",
+    "mg_coarse_pc_gamg_agg_nsmooths": 0,
+    "mg_coarse_mg_levels_ksp_type": "gmres",
+    "mg_coarse_mg_levels_ksp_max_it": _SMOOTHING_STEPS,
+    "mg_coarse_mg_levels_pc_type": "bjacobi",
+    "mg_coarse_mg_levels_sub_pc_type": "ilu",
+}
+"""Options for heat carried along: 4 to 30 iterations at Péclet numbers of a cell from 0 to 4e4;
+Gauss-Seidel sweeps instead of incomplete factors fail from 400 on (measured, to 1.5e5 unknowns)."""
+_RESTART = 100
 
 
 class MultigridSolver:
-    """Iterative solver of a symmetric positive definite problem; same interface as `DirectSolver`.
+    """Iterative solver of a definite problem; same interface as `DirectSolver`.
 
     Parameters
     ----------
@@ -53,6 +73,7 @@ class MultigridSolver:
     coarse : callable, optional
         Assembles the same problem, without its fixed values, in a space of linear elements on the
         same mesh; by default the Galerkin product of the matrix with their interpolation.
+    symmetric : bool, optional
 
     Raises
     ------
@@ -68,9 +89,11 @@ class MultigridSolver:
         space: fem.FunctionSpace,
         fixed: np.ndarray,
         coarse: Callable[[fem.FunctionSpace], PETSc.Mat] | None = None,
+        symmetric: bool = True,
     ):
         self.iterations: list[int] = []
-        self._matrix = matrix
+        self._matrix, self._space, self._fixed = matrix, space, fixed
+        self._symmetric = symmetric
         linear = lagrange_space(space.mesh, 1, _components(space))
         held = _at_vertices(space, fixed, linear)
         prolongation = _prolongation(linear, space, held, fixed)
@@ -78,17 +101,19 @@ class MultigridSolver:
         eliminate(below, held)
         for level in (matrix, below):
             level.setBlockSize(space.dofmap.index_map_bs)
-            level.setOption(PETSc.Mat.Option.SPD, True)
+            level.setOption(PETSc.Mat.Option.SPD, symmetric)
         below.setNearNullSpace(_near_nullspace(linear, below))
-        self._solver = _conjugate_gradients(matrix)
+        self._solver = _krylov_solver(matrix, symmetric)
         multigrid = self._solver.getPC()
         multigrid.setMGInterpolation(1, prolongation)
         multigrid.getMGCoarseSolve().setOperators(below)
         options = PETSc.Options(self._solver.getOptionsPrefix())
-        for name, value in _OPTIONS.items():
+        chosen = _OPTIONS if symmetric else _UNSYMMETRIC_OPTIONS
+        for name, value in chosen.items():
             options[name] = value
         self.repeat()  # which reads the options of all levels
-        for name in _OPTIONS:
+        self._solver.getPC().setUpOnBlocks()
+        for name in chosen:
             options.delValue(name)
 
     def repeat(self) -> None:
@@ -106,7 +131,15 @@ class MultigridSolver:
             result[:, k] = self._solved(column)
         return result
 
-    solve_transposed = solve
+    def solve_transposed(self, loads: np.ndarray) -> np.ndarray:
+        """Solve with the transposed matrix; see `DirectSolver.solve_transposed`."""
+        return self.solve(loads) if self._symmetric else self._transposed.solve(loads)
+
+    @cached_property
+    def _transposed(self) -> MultigridSolver:
+        """Solver of the transposed matrix. Every rank calls."""
+        transposed = self._matrix.copy().transpose()
+        return MultigridSolver(transposed, self._space, self._fixed, symmetric=False)
 
     def _solved(self, load: np.ndarray) -> np.ndarray:
         right, x = self._matrix.createVecs()
@@ -123,11 +156,13 @@ class MultigridSolver:
         return x.getArray().copy()
 
 
-def _conjugate_gradients(matrix: PETSc.Mat) -> PETSc.KSP:
-    """Conjugate gradients with two levels of multigrid, whose operators are not yet set."""
+def _krylov_solver(matrix: PETSc.Mat, symmetric: bool) -> PETSc.KSP:
+    """Krylov method with two levels of multigrid, whose operators are not yet set."""
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOptionsPrefix("multigrid_")
-    solver.setType(PETSc.KSP.Type.CG)
+    solver.setType(PETSc.KSP.Type.CG if symmetric else PETSc.KSP.Type.FGMRES)
+    if not symmetric:
+        solver.setGMRESRestart(_RESTART)
     solver.setOperators(matrix)
     solver.setTolerances(rtol=RELATIVE_TOLERANCE, atol=0.0, max_it=_MAX_ITERATIONS)
     solver.setNormType(PETSc.KSP.NormType.NORM_UNPRECONDITIONED)

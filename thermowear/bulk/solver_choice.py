@@ -161,10 +161,10 @@ def linear_solver(
     space : dolfinx.fem.FunctionSpace
     fixed : ndarray of bool, shape (n_owned,)
     symmetry : str
-        See `DirectSolver`; unsymmetric matrices are always factorised.
+        See `DirectSolver`; indefinite symmetric matrices are always factorised.
     coarse : callable, optional
         See `MultigridSolver`.
     """
-    if choice.iterative and symmetry == "definite":
-        return MultigridSolver(matrix, space, fixed, coarse)
+    if choice.iterative and symmetry in ("definite", "none"):
+        return MultigridSolver(matrix, space, fixed, coarse, symmetric=symmetry == "definite")
     return DirectSolver(matrix, symmetry, dim=space.mesh.topology.dim)

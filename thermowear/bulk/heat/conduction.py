@@ -234,7 +234,7 @@ def conduction_solver(
 ) -> AnySolver:
     """Solver of conductivity plus bath, rows and columns of prescribed temperatures eliminated.
 
-    Where temperatures are uniform along paths, or heat is carried along, it is direct.
+    Where temperatures are uniform along paths it is direct.
     """
     matrix = conductivity.copy()
     matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)

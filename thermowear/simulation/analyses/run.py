@@ -115,8 +115,9 @@ def analyse(
     Starts anew, or from the checkpoint of an analysis of the same system.
     """
     choice = system.choice
-    if (note := choice.note()) is not None:
-        observer.note(note)
+    for note in (choice.note(), _factorised_conduction(system)):
+        if note is not None:
+            observer.note(note)
     if system.pairing.unpaired > _UNPAIRED:
         percent = 100 * system.pairing.unpaired
         observer.note(
@@ -153,6 +154,14 @@ def analyse(
     named = {"title": system.model.title, "analysis": analysis.type}
     origin = {} if mesh is None else {"mesh_sha256": mesh}
     return end, replace(result, summary=named | result.summary | solved | origin, stopped=stopped)
+
+
+def _factorised_conduction(system: System) -> str | None:
+    """Note on conduction that is factorised although the bodies are not."""
+    thermal = system.thermal
+    if not system.choice.iterative or thermal is None or thermal.conduction.even is None:
+        return None
+    return 'solver: direct for the temperatures, as heat.advection = "spread" joins their unknowns'
 
 
 def _iterations(system: System) -> dict[str, int]:

@@ -12,6 +12,7 @@ import thermowear as tw
 from thermowear.contact.operators import condensation
 from thermowear.contact.operators.coupled_heat import CoupledHeat
 from thermowear.errors import CaseError, ComputationError
+from thermowear.laws.coefficients import Multipliers, Table1D
 from thermowear.model import Discretisation, Heat, Motion, StaticAnalysis
 from thermowear.simulation.analyses.run import run
 from thermowear.simulation.runtime.observer import Observer
@@ -97,6 +98,23 @@ def test_results_of_condensed_bodies(conductance, given, cells):
     assert 0 < summary["multigrid_iterations_conduction"] <= 40
     fields = multigrid.fields, direct.fields
     np.testing.assert_allclose(fields[0].temperature, fields[1].temperature, rtol=1e-7)
+
+
+def test_conditions_that_depend_on_the_state():
+    """requirement: friction and conductance by temperature and pressure, direct and multigrid."""
+    softening = Multipliers({"T": Table1D((300.0, 1500.0), (1.0, 0.4))})
+    conductance = Multipliers({"p": Table1D((0.0, 5e6), (1e3, 5e4))})
+    model = off_centre(hot_blocks(COARSE, "direct"))
+    face = replace(model.interface, friction_factors=softening, conductance=conductance)
+    model = replace(model, interfaces=(face,))
+    direct = run(model, STEADY)
+    multigrid = run(replace(model, discretisation=Discretisation(2, solver="multigrid")), STEADY)
+    assert direct.summary["friction_max"] > 1.01 * direct.summary["friction_min"]
+    for name in ("pressure", "shape", "temperature_1", "temperature_2"):
+        expected = getattr(direct.interface, name)
+        np.testing.assert_allclose(
+            getattr(multigrid.interface, name), expected, rtol=0.0, atol=1e-6 * np.ptp(expected)
+        )
 
 
 def test_a_cold_steady_state():

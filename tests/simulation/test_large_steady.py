@@ -5,6 +5,7 @@ import tracemalloc
 from dataclasses import replace
 from functools import cache
 
+import meshio
 import numpy as np
 import pytest
 
@@ -14,6 +15,7 @@ from thermowear.contact.operators.coupled_heat import CoupledHeat
 from thermowear.errors import CaseError, ComputationError
 from thermowear.laws.coefficients import Multipliers, Table1D
 from thermowear.model import Discretisation, Heat, Motion, StaticAnalysis
+from thermowear.output.frames import write_fields
 from thermowear.simulation.analyses.run import run
 from thermowear.simulation.runtime.observer import Observer
 from thermowear.simulation.system import system as systems
@@ -21,7 +23,7 @@ from thermowear.simulation.system import thermal_system
 from thermowear.simulation.system.building import build
 from thermowear.timer import Phases
 
-from ..contact.solids import COMM
+from ..contact.solids import COMM, HEIGHTS, SIZE
 from ..test_parallel import thermowear
 from . import multigrid_on_ranks
 from .hot_solids import COOLING, FORCE, BlockMeshes, hot_blocks
@@ -115,6 +117,22 @@ def test_conditions_that_depend_on_the_state():
         np.testing.assert_allclose(
             getattr(multigrid.interface, name), expected, rtol=0.0, atol=1e-6 * np.ptp(expected)
         )
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_fields_of_tetrahedra(degree, tmp_path):
+    """requirement: small tetrahedra of positive volume that fill the bodies, also in the file."""
+    model = replace(hot_blocks(BlockMeshes(), "direct", degree=degree), heat=None)
+    fields = run(model, STEADY).fields
+    corners = fields.points[:, fields.pieces]
+    volumes = np.linalg.det(corners[:, :, 1:] - corners[:, :, :1]) / 6
+    assert volumes.min() > 0.0
+    for body, height in zip((1, 2), HEIGHTS, strict=True):
+        volume = volumes[fields.body == body].sum()
+        assert volume == pytest.approx(np.prod(SIZE) * height, rel=1e-9)
+    write_fields(tmp_path / "fields.vtu", fields)
+    (block,) = meshio.read(tmp_path / "fields.vtu").cells
+    assert (block.type, len(block.data)) == ("tetra", volumes.size)
 
 
 def test_a_cold_steady_state():

@@ -116,6 +116,8 @@ def test_what_is_supported(ring):
         replace(model, kinematics=None)
     with pytest.raises(tw.CaseError, match=r"^Model\.thickness: needed for a plane model"):
         replace(model, kinematics="plane-strain")
+    with pytest.raises(tw.CaseError, match=r"^Model\.solver: found 'fast'; must be one of auto"):
+        replace(model, solver="fast")
 
 
 @pytest.mark.parametrize(

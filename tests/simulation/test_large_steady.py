@@ -5,6 +5,7 @@ import tracemalloc
 from dataclasses import replace
 from functools import cache
 
+import meshio
 import numpy as np
 import pytest
 
@@ -12,7 +13,9 @@ import thermowear as tw
 from thermowear.contact.operators import condensation
 from thermowear.contact.operators.coupled_heat import CoupledHeat
 from thermowear.errors import CaseError, ComputationError
+from thermowear.laws.coefficients import Multipliers, Table1D
 from thermowear.model import Discretisation, Heat, Motion, StaticAnalysis
+from thermowear.output.frames import write_fields
 from thermowear.simulation.analyses.run import run
 from thermowear.simulation.runtime.observer import Observer
 from thermowear.simulation.system import system as systems
@@ -20,7 +23,7 @@ from thermowear.simulation.system import thermal_system
 from thermowear.simulation.system.building import build
 from thermowear.timer import Phases
 
-from ..contact.solids import COMM
+from ..contact.solids import COMM, HEIGHTS, SIZE
 from ..test_parallel import thermowear
 from . import multigrid_on_ranks
 from .hot_solids import COOLING, FORCE, BlockMeshes, hot_blocks
@@ -97,6 +100,39 @@ def test_results_of_condensed_bodies(conductance, given, cells):
     assert 0 < summary["multigrid_iterations_conduction"] <= 40
     fields = multigrid.fields, direct.fields
     np.testing.assert_allclose(fields[0].temperature, fields[1].temperature, rtol=1e-7)
+
+
+def test_conditions_that_depend_on_the_state():
+    """requirement: friction and conductance by temperature and pressure, direct and multigrid."""
+    softening = Multipliers({"T": Table1D((300.0, 1500.0), (1.0, 0.4))})
+    conductance = Multipliers({"p": Table1D((0.0, 5e6), (1e3, 5e4))})
+    model = off_centre(hot_blocks(COARSE, "direct"))
+    face = replace(model.interface, friction_factors=softening, conductance=conductance)
+    model = replace(model, interfaces=(face,))
+    direct = run(model, STEADY)
+    multigrid = run(replace(model, discretisation=Discretisation(2, solver="multigrid")), STEADY)
+    assert direct.summary["friction_max"] > 1.01 * direct.summary["friction_min"]
+    for name in ("pressure", "shape", "temperature_1", "temperature_2"):
+        expected = getattr(direct.interface, name)
+        np.testing.assert_allclose(
+            getattr(multigrid.interface, name), expected, rtol=0.0, atol=1e-6 * np.ptp(expected)
+        )
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_fields_of_tetrahedra(degree, tmp_path):
+    """requirement: small tetrahedra of positive volume that fill the bodies, also in the file."""
+    model = replace(hot_blocks(BlockMeshes(), "direct", degree=degree), heat=None)
+    fields = run(model, STEADY).fields
+    corners = fields.points[:, fields.pieces]
+    volumes = np.linalg.det(corners[:, :, 1:] - corners[:, :, :1]) / 6
+    assert volumes.min() > 0.0
+    for body, height in zip((1, 2), HEIGHTS, strict=True):
+        volume = volumes[fields.body == body].sum()
+        assert volume == pytest.approx(np.prod(SIZE) * height, rel=1e-9)
+    write_fields(tmp_path / "fields.vtu", fields)
+    (block,) = meshio.read(tmp_path / "fields.vtu").cells
+    assert (block.type, len(block.data)) == ("tetra", volumes.size)
 
 
 def test_a_cold_steady_state():

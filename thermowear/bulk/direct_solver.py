@@ -14,7 +14,8 @@ _FAILURES = {
     -6: _SINGULAR,
     -9: "its work space was too small",
     -10: _SINGULAR,
-    -13: "the memory does not suffice; use fewer elements or a lower degree",
+    -13: "the memory does not suffice; use fewer elements, a lower degree, or in space "
+    'mesh.solver = "multigrid"',
 }
 """Reasons by the error code of MUMPS (INFOG(1))."""
 _ORDERINGS = {2: 2, 3: 4}

@@ -3,9 +3,9 @@
 Two levels of degree: the elements of the problem and linear ones on the same mesh, for which
 smoothed aggregation (GAMG) continues with the rigid-body motions, or constants, as near-nullspace.
 The method is that of conjugate gradients, with Chebyshev polynomials as smoothers: of point-block
-Jacobi, on lower levels of symmetric Gauss-Seidel sweeps. Where heat is carried along, and the matrix
-is not symmetric, it is flexible GMRES, smoothed by GMRES with incomplete factors. Iterations hardly
-grow with the number of unknowns.
+Jacobi, on lower levels of symmetric Gauss-Seidel sweeps. Where heat is carried along, and the
+matrix is not symmetric, it is flexible GMRES, smoothed by GMRES with incomplete factors. Iterations
+hardly grow with the number of unknowns.
 """
 
 from __future__ import annotations
@@ -150,7 +150,7 @@ class MultigridSolver:
             raise ComputationError(
                 f"the multigrid solver has not converged in {count} iterations (PETSc reason "
                 f"{reason}): a part of a body is not supported, or cells are nearly flat; "
-                "solver = direct may tell which"
+                "mesh.solver = direct may tell which"
             )
         self.iterations.append(count)
         return x.getArray().copy()

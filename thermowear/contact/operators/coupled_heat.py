@@ -26,7 +26,7 @@ _TOLERANCE = 1e-9
 _ITERATIONS = 60
 _UNCONVERGED = (
     "heat: the exchange of heat between faces in perfect contact did not converge; give "
-    "heat.conductance, or solver = direct"
+    "heat.conductance, or mesh.solver = direct"
 )
 
 

@@ -11,11 +11,11 @@ from .body import Body, Material
 from .conditions import Heat, Holder, Motion
 from .interface import (
     CircularTrack,
-    PinTrack,
     ContactMethod,
     EvenTrack,
     FaceWear,
     HardnessConductance,
     Interface,
+    PinTrack,
 )
 from .model import Discretisation, MeshSource, Model

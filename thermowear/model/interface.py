@@ -97,7 +97,7 @@ class PinTrack:
         return rings(radii, weights, round_duty(radii, self.distance, radius))
 
     def _pin_axis(self, points: np.ndarray, weights: np.ndarray) -> np.ndarray:
-        """x and y of the axis of the pin, in the direction of the middle of the face [m]."""
+        """X and y of the axis of the pin, in the direction of the middle of the face [m]."""
         arm = weights @ points[:, :2] / weights.sum() - np.array(self.center)
         return np.array(self.center) + self.distance * arm / np.linalg.norm(arm)
 

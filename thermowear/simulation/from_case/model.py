@@ -30,12 +30,12 @@ from ...model.body import Body, Material
 from ...model.conditions import Heat, Holder, Motion
 from ...model.interface import (
     CircularTrack,
-    PinTrack,
     ContactMethod,
     EvenTrack,
     FaceWear,
     HardnessConductance,
     Interface,
+    PinTrack,
 )
 from ...model.model import Discretisation, Model, Zone
 
@@ -232,9 +232,7 @@ def _face_wear(case: Case, wear: BodyWearTable) -> FaceWear:
     return FaceWear(law, factors, b, track, wear.per)
 
 
-def _track(
-    case: Case, wear: BodyWearTable
-) -> Distribution | EvenTrack | CircularTrack | PinTrack:
+def _track(case: Case, wear: BodyWearTable) -> Distribution | EvenTrack | CircularTrack | PinTrack:
     geometry = case.geometry
     if wear.spread == "in-place":
         return InPlace()

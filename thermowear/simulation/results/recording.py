@@ -5,15 +5,11 @@ Fields of the bodies are sampled on a fine grid in every cell and gathered on ra
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
-from itertools import permutations
 
 import numpy as np
 import ufl
 from dolfinx import fem
-from numpy.lib.stride_tricks import sliding_window_view
 
 from ...bulk.field import as_function
 from ...bulk.heat.varying import straining_rise
@@ -25,11 +21,9 @@ from ..interface.body_state import BodyState, ContactState, body_state
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
 from ..system.system import System
+from .cell_grids import GRIDS, divisions
 
 _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
-_SMOOTH, _DRAWN_CELLS = 6, 200_000
-"""Number of parts of the side of a curved cell that looks smooth; parts of all cells up to which
-cells are divided more finely than their fields need."""
 _LEAST_COSINE = 0.05
 """Least cosine between face normal and load direction for a shape along the load direction."""
 
@@ -194,8 +188,8 @@ def sample(snapshot: Snapshot) -> BodyFields | None:
     """
     system, state, motion = snapshot.system, snapshot.bodies, snapshot.motion
     mesh, elastic = system.bodies.mesh, system.elastic
-    n = _divisions(mesh, max(system.model.discretisation.degree, 2))
-    grid, pieces = _GRIDS[mesh.topology.cell_name()](n)
+    n = divisions(mesh, max(system.model.discretisation.degree, 2))
+    grid, pieces = GRIDS[mesh.topology.cell_name()](n)
     centre = grid.mean(axis=0)
     inside = centre + (grid - centre) * (1 - _INSET)
     cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
@@ -251,65 +245,3 @@ def with_holder(system: System, displacement: np.ndarray, motion: RigidMotion) -
 def _von_mises(σ):
     s = σ - ufl.tr(σ) / 3 * ufl.Identity(3)
     return ufl.sqrt(1.5 * ufl.inner(s, s))
-
-
-def _divisions(mesh, least: int) -> int:
-    """Number of parts of each side of a cell: more in space where few curved cells look angular."""
-    if mesh.topology.dim < 3 or mesh.geometry.cmap.degree == 1:
-        return least
-    cells = mesh.topology.index_map(mesh.topology.dim).size_global
-    fine = int((_DRAWN_CELLS / max(cells, 1)) ** (1 / 3))
-    return max(least, min(fine, _SMOOTH))
-
-
-def _grid(n: int, dim: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points of an (n + 1)ᵈ grid on the unit cell, and the corners of its small cells."""
-    axes = np.meshgrid(*[np.linspace(0.0, 1.0, n + 1)] * dim, indexing="ij")
-    points = np.column_stack([axis.ravel() for axis in axes[::-1]])
-    numbers = np.arange(len(points)).reshape(axes[0].shape)
-    return points, sliding_window_view(numbers, (2,) * dim).reshape(-1, 2**dim)
-
-
-def _box(n: int, dim: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points of a grid on a reference cell, and its small cells in the order of VTK."""
-    points, corners = _grid(n, dim)
-    return points, corners[:, [0, 1, 3, 2, 4, 5, 7, 6][: 2**dim]]
-
-
-def _triangle(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points of a regular grid on the reference triangle, and its small triangles."""
-    points, corners = _grid(n, 2)
-    inside = points.sum(axis=1) < 1 + 0.5 / n
-    halves = np.vstack([corners[:, [0, 1, 2]], corners[:, [1, 3, 2]]])
-    return points[inside], (np.cumsum(inside) - 1)[halves[inside[halves].all(axis=1)]]
-
-
-def _tetrahedron(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Points of a regular grid on the reference tetrahedron, and its small tetrahedra.
-
-    Boxes are divided along their diagonals (Kuhn), as is the tetrahedron ``x >= y >= z`` of them.
-    """
-    points, _ = _grid(n, 3)
-    inside = (np.diff(points, axis=1) <= 0.5 / n).all(axis=1)
-    numbers = np.arange(len(points)).reshape((n + 1,) * 3).transpose()  # by x, y, z
-    cells = []
-    for axes in permutations(np.eye(3, dtype=int)):
-        corners = np.cumsum([np.zeros(3, dtype=int), *axes], axis=0)
-        boxes = np.stack(np.indices((n,) * 3), axis=-1).reshape(-1, 1, 3) + corners
-        cells.append(numbers[tuple(np.moveaxis(boxes, -1, 0))])
-    small = np.concatenate(cells)
-    small = (np.cumsum(inside) - 1)[small[inside[small].all(axis=1)]]
-    x, y, z = points[inside].T
-    points = np.column_stack([x - y, y - z, z])
-    edges = points[small[:, 1:]] - points[small[:, :1]]
-    reversed_ = np.linalg.det(edges) < 0
-    small[reversed_, 1:3] = small[reversed_, 2:0:-1]
-    return points, small
-
-
-_GRIDS: dict[str, Callable[[int], tuple[np.ndarray, np.ndarray]]] = {
-    "quadrilateral": partial(_box, dim=2),
-    "triangle": _triangle,
-    "hexahedron": partial(_box, dim=3),
-    "tetrahedron": _tetrahedron,
-}

@@ -56,7 +56,7 @@ def _tetrahedron(n: int) -> tuple[np.ndarray, np.ndarray]:
     cells = []
     for axes in permutations(np.eye(3, dtype=int)):
         corners = np.cumsum(np.array([np.zeros(3, dtype=int), *axes]), axis=0)
-        boxes = np.stack(np.indices((n,) * 3), axis=-1).reshape(-1, 1, 3) + corners
+        boxes = np.moveaxis(np.indices((n,) * 3), 0, -1).reshape(-1, 1, 3) + corners
         cells.append(numbers[tuple(np.moveaxis(boxes, -1, 0))])
     small = np.concatenate(cells)
     small = (np.cumsum(inside) - 1)[small[inside[small].all(axis=1)]]

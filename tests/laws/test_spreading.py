@@ -12,6 +12,7 @@ from thermowear.laws import (
     contact_patch,
     rings,
     rotation,
+    round_duty,
     steady_pressure,
     translation,
     uniform_track,
@@ -48,6 +49,25 @@ def test_share_and_rows_say_the_same():
     for way in (InPlace(), Distribution(0.3), uniform_track(LENGTHS), turning):
         common = 0.0 if way.means is None else way.means.reach @ (way.means.rows @ LOCAL)
         np.testing.assert_allclose(way.rate(np.eye(4)) @ LOCAL, way.share * LOCAL + common)
+
+
+def test_circles_under_a_round_pin():
+    """requirement: a uniform rate wears each circle for the time that it is under the pin."""
+    d, a = 20e-3, 4e-3
+    x, w = np.polynomial.legendre.leggauss(30)
+    r, θ = np.meshgrid(a * (x + 1) / 2, 2 * np.pi * np.arange(60) / 60, indexing="ij")
+    weights = (np.repeat(w[:, None], 60, axis=1) * a / 2 * r * 2 * np.pi / 60).ravel()
+    radii = np.hypot(d + r * np.cos(θ), r * np.sin(θ)).ravel()
+    duty = round_duty(radii, d, a)
+    at_axis = 2 * np.arcsin(a / 2 / d) * 2 / (2 * np.pi)
+    assert round_duty(np.array([d]), d, a)[0] == pytest.approx(at_axis, rel=1e-12)
+    assert (weights / duty).sum() == pytest.approx(np.pi * ((d + a) ** 2 - (d - a) ** 2), rel=1e-2)
+    way = rings(radii, weights, duty)
+    even = way.rate(np.ones(len(radii)))
+    inner = np.abs(radii - d) < 0.7 * a
+    np.testing.assert_allclose(even[inner], duty[inner], rtol=0.03)
+    local = 1.0 + np.cos(40 * radii / d)
+    assert weights / way.coverage @ way.rate(local) == pytest.approx(weights @ local, rel=1e-12)
 
 
 def test_a_share_of_the_wear():

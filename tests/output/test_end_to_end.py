@@ -52,6 +52,10 @@ QUICK = {
     + ("analysis.end_time=20 h", 'analysis.output_times=["10 h"]'),
     "disk-sector": ("mesh.degree=2", "mesh.elements=4"),
     "rectangular-punch": ("mesh.degree=2", "mesh.elements=4"),
+    "pin-on-disk": ("mesh.degree=2", "mesh.elements=4"),
+    "pin-on-disk-ball": ("mesh.degree=2", "mesh.elements=4"),
+    "pin-on-disk-running-in": ("mesh.degree=2", "mesh.elements=4")
+    + ("analysis.end_time=20 s", 'analysis.output_times=["1 s"]'),
     "tube-in-support": ("mesh.degree=2", "analysis.cycles=8000")
     + ('analysis.output_times=["200 s"]',),
     "cylinder-fretting": ("mesh.degree=2", "wear.cycles=20", 'analysis.output_times=["1 s"]'),

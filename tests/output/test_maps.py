@@ -73,8 +73,8 @@ def folder_of(tmp_path_factory):
 @pytest.mark.parametrize(
     ("name", "pictures"),
     [
-        ("punch", {"interface", "wear", "history", "bodies", "deformed"}),
-        pytest.param("brake", {"interface", "bodies", "deformed"}, marks=pytest.mark.slow),
+        ("punch", {"interface", "wear", "history", "bodies", "deformed", "faces"}),
+        pytest.param("brake", {"interface", "bodies", "deformed", "faces"}, marks=pytest.mark.slow),
     ],
 )
 def test_every_picture_shows_something(folder_of, name, pictures):

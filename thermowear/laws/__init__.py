@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-from .distribution import Distribution, InPlace, rings, uniform_track
+from .distribution import Distribution, InPlace, rings, round_duty, uniform_track
 from .formulas import interface_law, wear_rate
 from .interfaces import Law, LocalState, parameter, registered, registered_laws
 from .motions import RigidMotion, rotation, translation

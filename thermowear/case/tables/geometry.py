@@ -95,8 +95,9 @@ class Geometry(Section):
     duty : float or None
         Duty factor: fraction of a turn for which a point of body 2 is under body 1, in space.
     footprint : tuple of float or None
-        Distance of a round contact face from the centre of rotation, and its radius or None if that
-        depends on the mesh, in space: the duty factor depends on the radius then [m].
+        Distance of a round face from the centre of rotation, and its radius if known, in space [m].
+    along_paths : bool
+        True if body 2 has rows of cells along the paths of its points.
     sector : float
         Fraction of the circumference covered by an axisymmetric body 1.
     thickness_factor : float or None
@@ -128,6 +129,7 @@ class Geometry(Section):
     track: ClassVar[float | None] = None
     duty: ClassVar[float | None] = None
     footprint: ClassVar[tuple[float, float | None] | None] = None
+    along_paths: ClassVar[bool] = True
     sector: ClassVar[float] = 1.0
     thickness_factor: ClassVar[float | None] = None
     zones: ClassVar[dict[str, str]] = {}

@@ -185,6 +185,12 @@ def heat(case: Case) -> Iterator[Fault]:
             "heat.advection",
             '"resolved" needs a constant speed, without motion.history: use "spread" or "none"',
         )
+    elif heat.advection == "spread" and not case.geometry.along_paths:
+        yield (
+            "heat.advection",
+            '"spread" needs a mesh with rows of elements along the path of body 2; the mesh of '
+            f'{case.geometry.type!r} has none: use "resolved"',
+        )
     if case.analysis.type in ("fretting", "reciprocating"):  # do not support heat
         return
     if heat.transient and case.analysis.type != "transient":

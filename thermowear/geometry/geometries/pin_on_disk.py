@@ -7,7 +7,7 @@ made by gmsh.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Literal
 
@@ -19,8 +19,9 @@ from ...case.values.section import KeyFault
 from ...case.values.units import Length
 from ...errors import CaseError
 from ..mesh.tagged import TaggedMesh
-from ..meshing.cells import Claim, MeshedBody, both, every, tagged_bodies
+from ..meshing.cells import MeshedBody, tagged_bodies
 from ..meshing.tetrahedra import RoundZone, mesh_solids
+from .pin_drawing import DrawnPin
 
 _ORDER = 2
 """Largest cell order; never above the displacement degree, so that rigid rotations are exact."""
@@ -28,8 +29,6 @@ _STEEPEST = 0.5
 """Radius of the face of a spherical end over the radius of the sphere."""
 _CLEARANCE = 0.05
 """Least distance of the pin from the edges of the disk, by the radius of the pin."""
-_SAME = 1e-7
-"""Tolerance for positions of nodes on a surface, by the radius of the pin."""
 _FACE = 1.4
 """Radius of the contact faces of a spherical end over that of the expected contact."""
 _THINNEST = 1e-4
@@ -39,8 +38,8 @@ _THINNEST = 1e-4
 class PinOnDisk(Geometry):
     """Dimensions of pin and disk, which rotates about the z-axis.
 
-    ``mesh.elements`` is the number across the contact, that of a flat end or of the expected contact
-    of a spherical one; those at its edge are smaller by the factor ``mesh.grading``.
+    ``mesh.elements`` is the number across the contact: a flat end, or the expected contact of a
+    spherical one. Elements at its edge are smaller by the factor ``mesh.grading``.
 
     Attributes
     ----------
@@ -69,6 +68,7 @@ class PinOnDisk(Geometry):
     press_direction = (0.0, 0.0, -1.0)
     rotation_center = (0.0, 0.0)
     unmeshed = ("zone",)
+    along_paths = False
 
     type: Literal["pin-on-disk"]
     pin_radius: Length
@@ -205,129 +205,3 @@ class PinOnDisk(Geometry):
         inside = 2 * radius / elements
         sizes = inside, grading * inside, max(largest, inside)
         return RoundZone(self.track_radius, radius, *sizes, volume)
-
-
-@dataclass(frozen=True)
-class DrawnPin:
-    """Pin and disk with the outline of the contact faces.
-
-    The pin is drawn with an end that is flat within the contact face and rounded afterwards: no
-    node of the contact lies at a pole of a surface that gmsh meshes in parameters, and the faces of
-    pin and disk can have the same triangles.
-
-    Attributes
-    ----------
-    sizes : PinOnDisk
-    face : float
-        Radius of the contact faces [m].
-    """
-
-    sizes: PinOnDisk
-    face: float
-
-    @property
-    def unit(self) -> float:
-        """Length in which it is drawn [m]."""
-        return self.sizes.pin_radius
-
-    @property
-    def rise(self) -> float:
-        """Height of the edge of the contact face of the pin, 0 for a flat end [m]."""
-        flat = self.sizes.end_radius is None
-        return 0.0 if flat else float(self.sizes.sphere(np.array(self.face)))
-
-    def draw(self, names: tuple[str, ...], occ) -> dict[str, list[int]]:
-        """Draw some of the bodies; returns their volumes by name."""
-        drawn = [(3, self._pin(occ) if name == "pin" else self._disk(occ)) for name in names]
-        outline = (2, occ.addDisk(self.sizes.track_radius / self.unit, 0, 0, *self._radii))
-        parts = occ.fragment(drawn, [outline])[1]
-        return {
-            name: [tag for dim, tag in part if dim == 3]
-            for name, part in zip(names, parts[: len(names)], strict=True)
-        }
-
-    @property
-    def _radii(self) -> tuple[float, float]:
-        """Half-axes of the face, in the unit."""
-        return self.face / self.unit, self.face / self.unit
-
-    def _pin(self, occ) -> int:
-        sizes, unit = self.sizes, self.unit
-        axis, height = sizes.track_radius / unit, (sizes.pin_height - self.rise) / unit
-        beside = (sizes.end_height - self.rise) / unit
-        if not beside > 1e-9:
-            return occ.addCylinder(axis, 0, 0, 0, 0, height, 1.0)
-        assert sizes.end_radius is not None
-        ball = sizes.end_radius / unit
-        shaft = occ.addCylinder(axis, 0, beside, 0, 0, height - beside, 1.0)
-        sphere = occ.addSphere(axis, 0, ball - self.rise / unit, ball)
-        box = occ.addBox(axis - 2 * ball, -2 * ball, 0, 4 * ball, 4 * ball, beside)
-        slice_, _ = occ.intersect([(3, sphere)], [(3, box)])
-        ((_, tag),) = occ.fuse(slice_, [(3, shaft)])[0]
-        return tag
-
-    def _disk(self, occ) -> int:
-        sizes, unit = self.sizes, self.unit
-        thickness = sizes.disk_thickness / unit
-        whole, bore = (
-            (3, occ.addCylinder(0, 0, -thickness, 0, 0, thickness, radius / unit))
-            for radius in (sizes.disk_outer_radius, sizes.disk_inner_radius)
-        )
-        ((_, tag),) = occ.cut([whole], [bore])[0]
-        return tag
-
-    def rounded(self, points: np.ndarray) -> np.ndarray:
-        """Points of the pin with its end rounded.
-
-        Nodes of the flat face are moved to the sphere, those above in proportion to their distance
-        from the top.
-        """
-        sizes = self.sizes
-        if sizes.end_radius is None:
-            return points
-        away = np.hypot(points[:, 0] - sizes.track_radius, points[:, 1])
-        sphere = sizes.sphere(np.minimum(away, self.face))
-        part = 1 - points[:, 2] / (sizes.pin_height - self.rise)
-        result = points.copy()
-        result[:, 2] += self.rise - (self.rise - sphere) * part
-        return result
-
-    def claims(self) -> dict[str, Claim]:
-        """Predicates of all surfaces, see `tagged_bodies`."""
-        sizes = self.sizes
-        inside = _on_radius(sizes.disk_inner_radius, self._tolerance)
-        return {
-            "pin_face": both(self._on_end, self._under_pin),
-            "pin_top": self._at(sizes.pin_height),
-            "pin_side": every,
-            "disk_face": both(self._at(0.0), self._under_pin),
-            "disk_rest": self._at(0.0),
-            "disk_bottom": self._at(-sizes.disk_thickness),
-            "disk_inside": inside,
-            "disk_outside": every,
-        }
-
-    @property
-    def _tolerance(self) -> float:
-        return _SAME * self.unit
-
-    def _on_end(self, p: np.ndarray) -> np.ndarray:
-        if self.sizes.end_radius is None:
-            return self._at(0.0)(p)
-        away = np.hypot(p[..., 0] - self.sizes.track_radius, p[..., 1])
-        height = self.sizes.sphere(np.minimum(away, self.face))
-        return np.all(np.abs(p[..., 2] - height) < self._tolerance, axis=1)
-
-    def _at(self, z: float) -> Claim:
-        return lambda p: np.all(np.abs(p[..., 2] - z) < self._tolerance, axis=1)
-
-    def _under_pin(self, p: np.ndarray) -> np.ndarray:
-        away = np.hypot(p[..., 0] - self.sizes.track_radius, p[..., 1])
-        return np.all(away < self.face + self._tolerance, axis=1)
-
-
-def _on_radius(radius: float, tolerance: float) -> Claim:
-    """Predicate of the facets with all nodes at a distance from the z-axis."""
-    return lambda p: np.all(
-        np.abs(np.hypot(p[..., 0], p[..., 1]) - radius) < tolerance + 1e-9 * radius, axis=1
-    )

@@ -176,15 +176,14 @@ def _draw_windows(
 def _draw_solids(folder: Path) -> None:
     """Draw 3D bodies, clipped in the middle of the contact."""
     from .faces import draw_faces
-    from .solids import draw_solids, middle, read_grid
+    from .solids import draw_solids, read_grid
 
-    interface = tables.read(folder / "interface.csv")
-    y, grid = middle(interface), read_grid(folder / "fields.vtu")
-    draw_solids(folder / "bodies.png", grid, y)
+    interface, grid = tables.read(folder / "interface.csv"), read_grid(folder / "fields.vtu")
+    draw_solids(folder / "bodies.png", grid, interface)
     draw_faces(folder / "faces.png", grid, interface)
     factor = _magnification(grid.points, 1e3 * grid["displacement_m"])
     grid.points = grid.points + factor * 1e3 * grid["displacement_m"]
-    draw_solids(folder / "deformed.png", grid, y, _title(factor))
+    draw_solids(folder / "deformed.png", grid, interface, _title(factor))
 
 
 def _title(factor: float) -> str:

@@ -18,13 +18,14 @@ from .solids import (
     add_surfaces,
     cropped,
     draw_views,
+    focus_on,
     rendering,
 )
 
 _ABOVE = (0.45, -1.0, 0.9)
 """Direction of the camera from the face."""
 _RELIEF = 0.25  # height of the magnified shape relative to the face
-_WIDE = 1.6  # width of the view of a small face relative to it
+_WIDE = 1.8  # width of the view of a small face relative to it
 _LIFTED = 2e-3  # offset of the face from its body, relative to the face
 _BODY = "lightgray"  # grey of bodies without a field
 
@@ -43,13 +44,13 @@ def draw_faces(path: Path, grid, interface: TableColumns) -> None:
     face = contact_face(interface)
     body = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == 2))
     surface = body.clean(tolerance=1e-6 * body.length).extract_surface()
-    focus = _focus(face, surface)
+    focus = focus_on(interface, surface, _WIDE)
     views = [_pressure(face, surface, focus, interface)]
     if "temperature" in grid.point_data:
         views.append(_temperature(surface, focus))
     if np.ptp(face["shape"]) > 0.0:
         views.append(_shape(face, interface))
-    draw_views(path, views)
+    draw_views(path, [views])
 
 
 def contact_face(interface: TableColumns):
@@ -75,15 +76,6 @@ def _size(face) -> float:
     return float(np.ptp(face.points[:, :2], axis=0).max())
 
 
-def _focus(face, surface) -> list[float] | None:
-    """Bounds of the part to be seen around a small face; None if all is to be seen [mm]."""
-    reach = _WIDE / 2 * _size(face)
-    if 2 * reach > np.ptp(surface.points[:, :2], axis=0).max():
-        return None
-    middle = (face.points.min(axis=0) + face.points.max(axis=0)) / 2
-    return np.column_stack([middle - reach, middle + reach]).ravel().tolist()
-
-
 def _pressure(face, surface, focus, interface: TableColumns) -> View:
     """Pressure on the face of body 2."""
     limits = color_limits(face["pressure"])
@@ -105,9 +97,7 @@ def _temperature(surface, focus) -> View:
         add_surfaces(plotter, [surface], "temperature", limits)
     label = FIELDS["temperature"].axis
     title = "body 2, body 1 removed"
-    return View(
-        cropped(picture[0]), "temperature", label, limits, float(values.max()), title
-    )
+    return View(cropped(picture[0]), "temperature", label, limits, float(values.max()), title)
 
 
 def _shape(face, interface: TableColumns) -> View:
@@ -130,5 +120,7 @@ def _add_face(plotter, face, name: str, limits: Limits) -> None:
     plotter.add_mesh(
         face, scalars=name, cmap=color_map(name), clim=limits, show_scalar_bar=False, **SHADING
     )
-    outline = face.extract_feature_edges(feature_edges=False, non_manifold_edges=False, manifold_edges=False)
+    outline = face.extract_feature_edges(
+        feature_edges=False, non_manifold_edges=False, manifold_edges=False
+    )
     plotter.add_mesh(outline, color="black", line_width=2, lighting=False)

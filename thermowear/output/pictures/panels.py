@@ -40,7 +40,7 @@ COLORS = {
     "shape": "cividis",
     "wear": "magma_r",
 }
-_SMALL_CONTACT = 0.15
+SMALL_CONTACT = 0.15
 """Size of a contact relative to the bodies, below which it gets its own window."""
 _WINDOW_SIZE = 3.0  # width of that window relative to the size of the contact
 _MARGIN = 0.02
@@ -193,7 +193,7 @@ def contact_window(
     if not len(x):
         return None
     reach = _WINDOW_SIZE / 2 * max(np.ptp(x), np.ptp(y))
-    if 2 * reach >= _WINDOW_SIZE * _SMALL_CONTACT * np.ptp(points[:, 0]):
+    if 2 * reach >= _WINDOW_SIZE * SMALL_CONTACT * np.ptp(points[:, 0]):
         return None
     x, y = (v.min() + np.ptp(v) / 2 for v in (x, y))
     left, right = points[:, 0].min(), points[:, 0].max()

@@ -12,10 +12,20 @@ import pyvista
 
 from ...results import FIELDS
 from ..tables import TableColumns
-from .panels import MAP_STYLE, Limits, add_color_bar, color_limits, color_map, panels
+from .panels import (
+    MAP_STYLE,
+    SMALL_CONTACT,
+    Limits,
+    add_color_bar,
+    color_limits,
+    color_map,
+    panels,
+)
 
 PIXELS = (1400, 1100)
 _VIEW = (6.6, 5.2)  # largest width and height of a view [inches]
+_CLOSE = 2.5  # width of a close-up relative to the contact
+_TINY = 0.08  # size of a contact with a close-up relative to the bodies
 _WHITE = 250  # least value of the channels of white
 _MARGIN = 0.01  # relative to the size of a picture
 _CAMERA = (0.55, -1.0, 0.6)  # direction of the camera from the bodies
@@ -50,33 +60,80 @@ def middle(interface: TableColumns) -> float:
     return float(step * np.round((y.min() + y.max()) / 2 / step)) + 0.0
 
 
-def draw_solids(path: Path, grid, y: float, title: str = "") -> None:
-    """Draw one panel per field, side by side.
+def draw_solids(path: Path, grid, interface: TableColumns, title: str = "") -> None:
+    """Draw one panel per field, side by side; close-ups of a small contact below.
 
     Parameters
     ----------
     path : Path
     grid : pyvista.UnstructuredGrid
-        Cells with the fields, see `read_grid`.
-    y : float
-        Position of the cutting plane; the part with smaller y is removed [mm].
+        Cells with the fields, see `read_grid`. The part with smaller y than the contact's middle is
+        removed.
+    interface : TableColumns
+        Contact points.
     title : str
+        Remark on deformed bodies, of which there are no close-ups.
     """
+    y = middle(interface)
     surfaces = clipped(grid, y)
-    names = [name for name in ("temperature", "von_mises") if name in grid.point_data]
-    values = {name: np.concatenate([surface[name] for surface in surfaces]) for name in names}
-    limits = {name: color_limits(values[name]) for name in names}
-    views = [
-        View(
-            cropped(render(surfaces, name, limits[name])),
-            name,
-            FIELDS[name].axis,
-            limits[name],
-            float(values[name].max()),
-        )
-        for name in names
-    ]
-    draw_views(path, views, "; ".join(filter(None, [title, f"cut at y = {y:.4g} mm"])))
+    rows = [_fields_of(surfaces)]
+    close = None if title else focus_on(interface, grid, _CLOSE, _TINY)
+    if close is not None:
+        rows.append(_fields_of(surfaces, close))
+    cut = f"cut at y = {y:.4g} mm"
+    draw_views(path, rows, "; ".join(filter(None, [title, cut])))
+
+
+def _fields_of(surfaces: list, focus: list[float] | None = None) -> list[View]:
+    """Views of all fields, of the whole bodies or within bounds [mm]."""
+    views = []
+    for name in ("temperature", "von_mises"):
+        if name not in surfaces[0].point_data:
+            continue
+        values = np.concatenate([_within(surface, name, focus) for surface in surfaces])
+        limits = color_limits(values)
+        with rendering(focus=focus) as (plotter, picture):
+            add_surfaces(plotter, surfaces, name, limits)
+        pixels = cropped(picture[0])
+        views.append(View(pixels, name, FIELDS[name].axis, limits, float(values.max())))
+    return views
+
+
+def _within(surface, name: str, focus: list[float] | None) -> np.ndarray:
+    """Values of a surface within bounds [mm]."""
+    if focus is None:
+        return surface[name]
+    low, high = np.reshape(focus, (3, 2)).T
+    seen = np.all((surface.points >= low) & (surface.points <= high), axis=1)
+    return surface[name][seen]
+
+
+def focus_on(
+    interface: TableColumns, bodies, wide: float, small: float = SMALL_CONTACT
+) -> list[float] | None:
+    """Bounds of a cube around the points in contact; None if they are not small [mm].
+
+    Parameters
+    ----------
+    interface : TableColumns
+    bodies : pyvista.DataSet
+        Bodies, to which the size of the contact is compared.
+    wide : float
+        Size of the cube relative to that of the contact.
+    small : float
+        Size of a small contact relative to the bodies.
+    """
+    pressed = interface["pressure"] > 0
+    if not pressed.any():
+        return None
+    points = np.column_stack([interface.drawn(axis)[pressed] for axis in "xyz"])
+    low, high = points.min(axis=0), points.max(axis=0)
+    size, middle_ = float((high - low).max()), (low + high) / 2
+    if size > small * np.ptp(bodies.points, axis=0).max():
+        return None
+    reach = wide * size / 2
+    bounds = np.column_stack([middle_ - reach, middle_ + reach])
+    return [float(end) for end in bounds.ravel()]
 
 
 class View(NamedTuple):
@@ -101,25 +158,28 @@ class View(NamedTuple):
     title: str = ""
 
 
-def draw_views(path: Path, views: list[View], title: str = "") -> None:
-    """Draw views side by side, all with the same height."""
+def draw_views(path: Path, rows: list[list[View]], title: str = "") -> None:
+    """Draw rows of views with the same heights in each row."""
     width, height = _VIEW
-    shapes = [view.pixels.shape[1] / view.pixels.shape[0] for view in views]
-    tall = min(height, width / max(shapes))
-    size = (tall * sum(shapes) / len(shapes) + 1.2, tall + 0.5)
-    options: dict[str, Any] = {"style": MAP_STYLE, "crop": True, "width_ratios": shapes}
-    with panels(path, len(views), len(views), size, **options) as (figure, axes):
-        for axis, view in zip(axes.flat, views, strict=True):
+    shapes = np.array([[v.pixels.shape[1] / v.pixels.shape[0] for v in row] for row in rows])
+    widths = shapes.max(axis=0)
+    tall = min(height, width / float(widths.max()))
+    count, across = shapes.size, shapes.shape[1]
+    size = (tall * float(widths.mean()) + 1.2, tall + 0.3)
+    options: dict[str, Any] = {"style": MAP_STYLE, "crop": True, "width_ratios": widths}
+    with panels(path, count, across, size, **options) as (figure, axes):
+        for axis, view in zip(axes.flat, (v for row in rows for v in row), strict=True):
             axis.imshow(view.pixels, interpolation="antialiased")
             add_color_bar(axis, view.name, view.label, view.limits, view.largest)
             axis.set_axis_off()
             axis.set_title(view.title, fontsize=10)
-        figure.suptitle(title, fontsize=11)
+        if title:
+            figure.suptitle(title, fontsize=11)
 
 
 def cropped(picture: np.ndarray) -> np.ndarray:
     """Picture without the white space around its content, except for a margin."""
-    drawn = (picture < _WHITE).any(axis=2)
+    drawn = np.any(picture < _WHITE, axis=2)
     if not drawn.any():
         return picture
     rows, columns = (np.flatnonzero(drawn.any(axis=axis)) for axis in (1, 0))
@@ -187,7 +247,8 @@ def rendering(direction=_CAMERA, focus=None) -> Iterator[tuple[Any, list[np.ndar
     yield plotter, picture
     plotter.enable_parallel_projection()  # type: ignore[call-arg]
     plotter.camera_position = [np.array(direction), np.zeros(3), (0.0, 0.0, 1.0)]
-    plotter.add_axes(line_width=4)  # type: ignore[call-arg]
+    if focus is None:
+        plotter.add_axes(line_width=4)  # type: ignore[call-arg]
     plotter.reset_camera(bounds=focus)  # type: ignore[call-arg]
     plotter.camera.zoom(1.1)
     picture.append(plotter.screenshot(None, return_img=True))

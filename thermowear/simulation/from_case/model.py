@@ -232,9 +232,7 @@ def _face_wear(case: Case, wear: BodyWearTable) -> FaceWear:
     return FaceWear(law, factors, b, track, wear.per)
 
 
-def _track(
-    case: Case, wear: BodyWearTable
-) -> Distribution | EvenTrack | CircularTrack | PinTrack:
+def _track(case: Case, wear: BodyWearTable) -> Distribution | EvenTrack | CircularTrack | PinTrack:
     geometry = case.geometry
     if wear.spread == "in-place":
         return InPlace()

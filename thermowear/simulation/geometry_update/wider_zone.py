@@ -23,6 +23,8 @@ from ..system.worn_geometry import WornGeometry
 
 _WIDER = 1.6
 """Width of the next zone relative to the contact, at the same number of elements."""
+_RIM = 0.97
+"""Distance of the rim of a round face in space from its middle, relative to its radius."""
 _ROUNDING = 1e-9
 """Tolerance of positions, relative to the length of the face."""
 _COMBINED: dict[str, Callable[[Any, Any], Any]] = {
@@ -39,11 +41,21 @@ def ends_outside_zone(system: System) -> tuple[bool, bool]:
     if zone is None:
         return False, False
     margin = 1e-6 * (zone[1] - zone[0])
-    return bool(x[0] < zone[0] - margin), bool(x[-1] > zone[1] + margin)
+    first, last = (x.min(), x.max()) if _is_surface(system) else (x[0], x[-1])
+    return bool(first < zone[0] - margin), bool(last > zone[1] + margin)
+
+
+def _is_surface(system: System) -> bool:
+    return isinstance(system.pairing.sides[0].face, Surface)
 
 
 def reaches_open_end(system: System, pressure: np.ndarray) -> bool:
     """True if the contact reaches an end of the face that lies outside the expected zone."""
+    zone = system.model.expected_zone
+    if zone is not None and _is_surface(system):
+        middle = (zone[0] + zone[1]) / 2, 0.0
+        away = np.linalg.norm(system.pairing.points[:, :2] - middle, axis=1)
+        return bool(np.any(pressure[away > _RIM * away.max()] > 0))
     ends = zip(ends_outside_zone(system), (0, -1), strict=True)
     return any(outside and pressure[end] > 0 for outside, end in ends)
 
@@ -54,7 +66,7 @@ def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
     None if it has not, or if the mesh has no zone.
     """
     zone, pairing = system.zone, system.pairing
-    if zone is None or isinstance(pairing.sides[0].face, Surface) or not np.any(pressure > 0):
+    if zone is None or _is_surface(system) or not np.any(pressure > 0):
         return None
     x = pairing.points[:, 0]
     middle = 0.0 if system.model.symmetry else (zone[0] + zone[1]) / 2

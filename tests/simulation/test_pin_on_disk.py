@@ -1,0 +1,153 @@
+"""Pin on disk in space: pressure, worn volumes of both bodies, and the scar of a ball."""
+
+import math
+
+import numpy as np
+import pytest
+
+import thermowear as tw
+
+from ..case.bad import faults
+from ..case.starter import tables
+from .space import changed
+
+FLAT, RUNNING_IN, BALL = "pin-on-disk", "pin-on-disk-running-in", "pin-on-disk-ball"
+FORCE, SPEED, RADIUS, TRACK = 250.0, 25.0, 4e-3, 20e-3
+PIN, DISK = 2e-14, 6e-15
+COARSE = {"mesh": {"degree": 2, "elements": 4, "grading": 1.0}}
+COLD = COARSE | {"heat": None}
+BY_TIME = {"coefficient": "2e-8 m/(s MPa)", "velocity_exponent": 0.0}
+
+
+def run(starter, *changes):
+    case = tables(starter)
+    for change in changes:
+        case = changed(case, change)
+    return tw.run(tw.load(case))
+
+
+@pytest.fixture(scope="module")
+def worn():
+    """Pin and disk after 1000 s."""
+    return run(RUNNING_IN, COARSE)
+
+
+def test_steady_pressure():
+    """requirement: the pin may not tilt, so p r is even over its face."""
+    result = run(FLAT, COLD)
+    i = result.interface
+    r = np.hypot(i.x, i.y)
+    wear = PIN * i.pressure * SPEED * r
+    np.testing.assert_allclose(wear, wear.mean(), rtol=2e-3)
+    assert i.weight.sum() == pytest.approx(math.pi * RADIUS**2, rel=1e-4)
+    assert i.weight @ i.pressure == pytest.approx(FORCE, rel=1e-9)
+    # ∫ dA / r over a circle of radius a at the distance d from the axis, to fourth order in a/d
+    x = RADIUS / TRACK
+    mean = (1 + x**2 / 8 + 3 * x**4 / 64) / TRACK
+    velocity = PIN * SPEED * FORCE / (math.pi * RADIUS**2) / mean
+    assert result.summary["rigid_wear_velocity_m_per_s"] == pytest.approx(velocity, rel=1e-4)
+
+
+def test_worn_volume_on_a_wide_track():
+    """requirement: V = k F s to 1e-6, for the pin and, spread over the track, for the disk.
+
+    On a track of 2000 pin radii the sliding distance is the same all over the face.
+    """
+    wide = {
+        "geometry.pin_radius": "1 mm",
+        "geometry.pin_height": "3 mm",
+        "geometry.track_radius": "2 m",
+        "geometry.disk_inner_radius": "1.8 m",
+        "geometry.disk_outer_radius": "2.2 m",
+        "geometry.disk_thickness": "60 mm",
+        "motion.angular_velocity": "0.25 rad/s",
+        "load.force": "15 N",
+        "analysis.end_time": "500 s",
+        "analysis.output_times": None,
+    }
+    summary = run(RUNNING_IN, COARSE, wide).summary
+    work = 15.0 * 0.25 * 2.0 * 500.0
+    assert summary["wear_volume_1_m3"] == pytest.approx(PIN * work, rel=1e-6, abs=0.0)
+    assert summary["wear_volume_2_m3"] == pytest.approx(DISK * work, rel=1e-6, abs=0.0)
+
+
+def test_worn_volume_by_time():
+    """requirement: κ F t to 1e-6 for wear that does not depend on the speed, at any track."""
+    laws = {"wear.pin": BY_TIME | {"per": "pressure"}}
+    laws["wear.disk"] = {"coefficient": "6e-9 m/(s MPa)", "velocity_exponent": 0.0}
+    laws["wear.disk"] |= {"per": "pressure", "spread": "track"}
+    summary = run(RUNNING_IN, COARSE, laws).summary
+    assert summary["wear_volume_1_m3"] == pytest.approx(2e-14 * FORCE * 1e3, rel=1e-6, abs=0.0)
+    assert summary["wear_volume_2_m3"] == pytest.approx(6e-15 * FORCE * 1e3, rel=1e-6, abs=0.0)
+
+
+def test_groove_on_the_track(worn):
+    """requirement: depths of the disk depend on the radius alone, and fill the worn volume."""
+    i, volume = worn.interface, worn.summary["wear_volume_2_m3"]
+    first = worn.summary["wear_volume_1_m3"]
+    assert volume / first == pytest.approx(DISK / PIN, rel=1e-9)
+    r = np.hypot(i.x, i.y)
+    order = np.argsort(r)
+    r, depth = r[order], i.wear_2[order]
+    assert np.trapezoid(depth * 2 * math.pi * r, r) == pytest.approx(volume, rel=0.02)
+    even = np.interp(0.02, r, depth)
+    under = 2 * math.asin(RADIUS / 2 / TRACK) * 2 / (2 * math.pi)
+    local = DISK * worn.interface.pressure.mean() * SPEED * TRACK * 1e3
+    assert even == pytest.approx(local * under, rel=0.03)
+
+
+@pytest.mark.slow
+def test_a_ball_touches_as_hertz_says():
+    """requirement: peak within 1 %; the edge of the contact is found within half an element."""
+    summary = run(BALL).summary
+    modulus = 210e9 / (2 * (1 - 0.3**2))
+    radius = (3 * 10.0 * 3e-3 / (4 * modulus)) ** (1 / 3)
+    peak = 3 * 10.0 / (2 * math.pi * radius**2)
+    assert summary["max_pressure_Pa"] == pytest.approx(peak, rel=0.01)
+    assert math.sqrt(summary["contact_area_m2"] / math.pi) == pytest.approx(radius, rel=0.05)
+
+
+def scar(result, center):
+    """Radius of the scar, where a parabola through the wear depths within 80 % of it ends [m]."""
+    i = result.interface
+    r = np.hypot(i.x - center, i.y) if center else i.x
+    inside = r < 0.8 * math.sqrt(2 * 3e-3 * i.wear_1.max())
+    weights = np.sqrt(i.weight[inside])
+    slope, depth = np.polyfit(r[inside] ** 2, i.wear_1[inside], 1, w=weights)
+    return math.sqrt(-depth / slope)
+
+
+@pytest.mark.slow
+def test_scar_of_a_ball():
+    """requirement: radius within 1 % of that of the axisymmetric run, five times Hertz's."""
+    law = {"coefficient": "1.33e-7 1/MPa", "per": "pressure"}
+    after = {"type": "transient", "end_time": "2.4 s", "tolerance": 1e-2}
+    ring = {
+        "geometry.radius": "3 mm",
+        "geometry.block_radius": "8 mm",
+        "geometry.block_height": "6 mm",
+        "geometry.zone": "0.35 mm",
+        "load.force": "10 N",
+        "motion.velocity": "500 mm/s",
+        "wear": {"sphere": law},
+        "analysis": after,
+    }
+    solid = {
+        "geometry.zone": "0.35 mm",
+        "mesh": {"degree": 2, "elements": 6, "grading": 1.0},
+        "motion": {"angular_velocity": "25 rad/s"},
+        "wear": {"pin": law},
+        "analysis": after,
+    }
+    flat, found = run("sphere-on-block-growing", ring), run(BALL, solid)
+    assert scar(found, 0.02) == pytest.approx(scar(flat, 0.0), rel=0.01)
+    for result in (flat, found):
+        volume = 1.33e-13 * 10.0 * 0.5 * 2.4
+        assert result.summary["wear_volume_1_m3"] == pytest.approx(volume, rel=1e-4, abs=0.0)
+
+
+def test_heat_that_is_spread_needs_rows_of_elements():
+    """requirement: one line instead of a temperature that is even on some circles only."""
+    (line,) = faults({"heat.advection": "spread"}, FLAT)
+    assert line.startswith("heat.advection: ")
+    assert '"resolved"' in line

@@ -140,8 +140,13 @@ def numbering(numbers: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     if len(double):
         raise ValueError(f"node {ordered[double[0]]} is defined twice")
 
+    without_gaps = len(ordered) > 0 and ordered[-1] - ordered[0] == len(ordered) - 1
+
     def positions(wanted: np.ndarray) -> np.ndarray:
-        at = np.searchsorted(ordered, wanted)
+        if without_gaps:
+            at = np.clip(wanted - ordered[0], 0, len(ordered))
+        else:
+            at = np.searchsorted(ordered, wanted)
         missing = at == len(ordered)
         missing[~missing] = ordered[at[~missing]] != wanted[~missing]
         if missing.any():

@@ -2,6 +2,7 @@
 
 import re
 import warnings
+from dataclasses import replace
 
 import meshio
 import numpy as np
@@ -13,7 +14,7 @@ from thermowear.case.values.section import MODEL
 from thermowear.errors import CaseError
 from thermowear.geometry.geometries.mesh_file import MeshFile
 from thermowear.geometry.mesh.nodes import facet_nodes, shape_functions, slopes
-from thermowear.geometry.mesh.tagged import scaled_jacobians
+from thermowear.geometry.mesh.tagged import compact, scaled_jacobians
 from thermowear.geometry.reading.contents import VTK_ORDER
 from thermowear.geometry.reading.export import write_mesh
 from thermowear.lagrange import gauss
@@ -178,9 +179,7 @@ def test_families_of_med(tmp_path, cell_type, order):
     kind = {("tetrahedron", 1): "tetra", ("tetrahedron", 2): "tetra10"}.get(
         (cell_type, order), "hexahedron"
     )
-    facet = {1: {4: "tetra"}}.get(0) or {3: "triangle", 6: "triangle6", 4: "quad"}[
-        made.facets.shape[1]
-    ]
+    facet = {3: "triangle", 6: "triangle6", 4: "quad"}[made.facets.shape[1]]
     cells = made.cells[:, np.argsort(VTK_ORDER[kind])] if kind in VTK_ORDER else made.cells
     if cell_type == "tetrahedron":
         mirrored = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8][: cells.shape[1]]
@@ -359,3 +358,46 @@ def test_a_case_is_written_out_again(tmp_path):
         assert tw.load(tw.case.as_plain(case)) == case
         assert len(case.tagged_mesh().cells) > 0
     assert case.geometry.press_direction == (0.0, 0.0, -1.0)
+
+
+def test_a_file_for_each_body(tmp_path):
+    """
+    requirement: bodies in files of their own, of different formats, with the same names in both.
+    """
+    made = two_solids(((2, 2, 2), (3, 2, 2)), 2, (bent, straight), "tetrahedron")
+    paths = {}
+    for tag, (body, ending) in enumerate({"upper": "msh", "lower": "inp"}.items(), start=1):
+        chosen = made.cell_tags == tag
+        own = np.isin(made.facets, made.cells[chosen]).all(axis=1)
+        tags = made.facet_tags[own] - made.facet_tags[own].min() + 1
+        names = tuple(n.replace(body, "body") for n in made.surfaces if n.startswith(body))
+        alone = replace(
+            made,
+            cells=made.cells[chosen],
+            cell_tags=np.ones(chosen.sum(), dtype=np.int32),
+            facets=made.facets[own],
+            facet_tags=tags,
+            bodies=("BODY",),
+            surfaces=names,
+        )
+        paths[body] = str(tmp_path / f"{body}.{ending}")
+        write_mesh(compact(alone), tmp_path / f"{body}.{ending}")
+    keys = NAMES | {"bodies": {"upper": "BODY", "lower": "BODY"}}
+    names = [*NAMES["contact"], NAMES["held"], NAMES["fixed"]]
+    keys["surfaces"] = {n: n.replace("upper", "body").replace("lower", "body") for n in names}
+    tables = file_tables("", **keys)
+    tables["geometry"] = {k: v for k, v in tables["geometry"].items() if k != "path"}
+    tables["geometry"]["paths"] = paths
+    case = tw.load(tables)
+    same_solids(case.tagged_mesh(), made)
+    assert tw.load(tw.case.as_plain(case)) == case
+    for change, expected in (
+        ({"paths": {"upper": "a.msh"}}, "geometry.paths: needs a file for each of: upper, lower"),
+        ({"path": "a.msh"}, "geometry.paths: only one of path and paths can be given"),
+    ):
+        with pytest.raises(CaseError) as error:
+            tw.load(tables | {"geometry": tables["geometry"] | change})
+        assert error.value.faults[0] == expected
+    tables["geometry"]["paths"] = paths | {"lower": str(tmp_path / "no.inp")}
+    with pytest.raises(CaseError, match=r"geometry.paths.lower: .*no.inp cannot be read: No such"):
+        tw.load(tables).tagged_mesh()

@@ -116,7 +116,8 @@ class MeshContents:
 def joined(files: list[MeshContents]) -> MeshContents:
     """Contents of several files, each with one body, as if they were one."""
     starts = np.cumsum([0] + [len(of.points) for of in files])
-    blocks, node_sets = [], {}
+    blocks: list[CellBlock] = []
+    node_sets: dict[str, np.ndarray] = {}
     for body, (of, start) in enumerate(zip(files, starts, strict=False)):
         blocks += [CellBlock(b.kind, b.nodes + start, b.sets, body) for b in of.blocks]
         for name, nodes in of.node_sets.items():

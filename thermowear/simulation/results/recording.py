@@ -278,20 +278,19 @@ def _tetrahedron(n: int) -> tuple[np.ndarray, np.ndarray]:
     Boxes are divided along their diagonals (Kuhn), as is the tetrahedron ``x >= y >= z`` of them.
     """
     points, _ = _grid(n, 3)
-    inside = (np.diff(points, axis=1) <= 0.5 / n).all(axis=1)
+    inside = np.all(np.diff(points, axis=1) <= 0.5 / n, axis=1)
     numbers = np.arange(len(points)).reshape((n + 1,) * 3).transpose()  # by x, y, z
-    cells = []
+    cells, boxes = [], np.moveaxis(np.indices((n,) * 3), 0, -1).reshape(-1, 1, 3)
     for axes in permutations(np.eye(3, dtype=int)):
         corners = np.cumsum([np.zeros(3, dtype=int), *axes], axis=0)
-        boxes = np.stack(np.indices((n,) * 3), axis=-1).reshape(-1, 1, 3) + corners
-        cells.append(numbers[tuple(np.moveaxis(boxes, -1, 0))])
+        cells.append(numbers[tuple(np.moveaxis(boxes + corners, -1, 0))])
     small = np.concatenate(cells)
     small = (np.cumsum(inside) - 1)[small[inside[small].all(axis=1)]]
     x, y, z = points[inside].T
     points = np.column_stack([x - y, y - z, z])
     edges = points[small[:, 1:]] - points[small[:, :1]]
-    reversed_ = np.linalg.det(edges) < 0
-    small[reversed_, 1:3] = small[reversed_, 2:0:-1]
+    inverted = np.flatnonzero(np.linalg.det(edges) < 0)
+    small[inverted, 1:3] = small[inverted, 2:0:-1]
     return points, small
 
 

@@ -401,3 +401,15 @@ def test_a_file_for_each_body(tmp_path):
     tables["geometry"]["paths"] = paths | {"lower": str(tmp_path / "no.inp")}
     with pytest.raises(CaseError, match=r"geometry.paths.lower: .*no.inp cannot be read: No such"):
         tw.load(tables).tagged_mesh()
+
+
+def test_mean_pressure_on_the_faces_of_the_file(tmp_path):
+    """
+    requirement: without a given area, the lesser one of both faces, projected along the load.
+    """
+    path = write_blocks(tmp_path / "a.msh", 2)
+    tables = file_tables(path, length_unit="1 mm", **BLOCKS)
+    tables["load"] = {"mean_pressure": "2 MPa"}
+    assert tw.load(tables).force() == pytest.approx(2 * PAD[0] * PAD[1], rel=1e-12)
+    tables["geometry"]["contact_area"] = "100 mm^2"
+    assert tw.load(tables).force() == pytest.approx(200.0, rel=1e-12)

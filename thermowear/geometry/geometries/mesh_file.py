@@ -26,6 +26,7 @@ from ..reading.file_contents import read_contents
 from ..reading.mesh_checks import check_mesh
 from ..reading.named import Named
 from ..reading.pair_checks import check_pair
+from ..reading.solid_pairs import projected_area
 from ..reading.solid_surfaces import check_solid_mesh
 
 _KEYS = {
@@ -85,7 +86,8 @@ class MeshFile(HalvableGeometry):
         Key ``surfaces``: names in the file of further surfaces, or of those above, by their names
         in the case.
     contact_area_given : float or None
-        Key ``contact_area``: area for a mean pressure [m²].
+        Key ``contact_area``: area for a mean pressure, in space by default the lesser one of both
+        faces, projected along the load [m²].
     """
 
     name = "file"
@@ -109,6 +111,7 @@ class MeshFile(HalvableGeometry):
     contact_area_given: Area | None = Field(alias="contact_area", default=None)
     _with_material: dict[str, tuple[str, ...]] = PrivateAttr(default={})
     _in_space: bool = PrivateAttr(default=False)
+    _measured: float | None = PrivateAttr(default=None)
 
     @model_validator(mode="after")
     def _complete(self, info: ValidationInfo):
@@ -195,7 +198,10 @@ class MeshFile(HalvableGeometry):
         return tuple(self._purposes())
 
     def contact_area(self) -> float | None:
-        return self.contact_area_given
+        if self._in_space and self.contact_area_given is None and self._measured is None:
+            mesh = self.build(None, None)
+            self._measured = min(projected_area(mesh, face) for face in self.contact)
+        return self.contact_area_given or self._measured
 
     @keyed
     def set_of(self) -> dict[str, str]:

@@ -17,17 +17,26 @@ def sum_over_ranks(comm, values):
     return comm.bcast(total, root=0)
 
 
-def on_root(comm, action: Callable[[], Any]) -> Any:
-    """Run an action on rank 0 only; return its result, or raise its error, on every rank."""
+def on_root(comm, action: Callable[[], Any], share: bool = True) -> Any:
+    """Run an action on rank 0 only; return its result, or raise its error, on every rank.
+
+    Parameters
+    ----------
+    comm : mpi4py.MPI.Comm
+    action : callable
+    share : bool
+        False: the other ranks get None, as a large mesh that only rank 0 needs.
+    """
     if comm.size == 1:
         return action()
-    sent = None
+    result, sent = None, None
     if comm.rank == 0:
         try:
-            sent = pickle.dumps((action(), None))
+            result = action()
+            sent = pickle.dumps((result if share else None, None))
         except (Exception, KeyboardInterrupt) as caught:
             sent = pickle.dumps((None, caught))
-    result, error = pickle.loads(comm.bcast(sent, root=0))
+    received, error = pickle.loads(comm.bcast(sent, root=0))
     if error is not None:
         raise error
-    return result
+    return received if share else result

@@ -137,8 +137,8 @@ class FrictionHeat:
         rise = steady.rise(faces)
         heat = face.nodal_heat(faces, bath=False) + load.heat
         made = float(face.weights @ (conditions.heating * pressure))
-        lost = sum(conduction.losses(rise, heat))
-        scale = max(made + load.magnitude, conduction.exchanged_heat(rise, heat))
+        lost = sum(conduction.losses(rise, heat, load.ambient))
+        scale = max(made + load.magnitude, conduction.exchanged_heat(rise, heat, load.ambient))
         if made + load.magnitude == 0.0:  # the turnover may be at rounding level
             scale = max(scale, conduction.balance_scale(rise))
         return TemperatureField(faces, rise, relative(lost - made - load.prescribed, scale))

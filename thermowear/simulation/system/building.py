@@ -116,7 +116,9 @@ def check_contact_points(model: Model, comm) -> None:
 
 
 def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) -> Bodies:
-    mesh = on_root(comm, lambda: model.meshes.mesh(zone) if worn is None else worn.mesh)
+    mesh = on_root(
+        comm, lambda: model.meshes.mesh(zone) if worn is None else worn.mesh, share=False
+    )
     return distribute(mesh, comm)
 
 

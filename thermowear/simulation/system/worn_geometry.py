@@ -95,7 +95,7 @@ class WornGeometry:
 
     def moved(self, pairing: Pairing) -> np.ndarray:
         """Wear depths removed from both meshes at the points of a pairing, shape (2, n) [m]."""
-        depth = self.carried(self.depth, pairing)
+        depth = self.carried(self.depth, pairing).copy()
         for index, new in self.renewed.items():
             side = pairing.sides[index]
             out = side.face.normals(side.facet, side.t)

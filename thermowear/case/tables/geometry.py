@@ -102,6 +102,8 @@ class Geometry(Section):
         Fraction of the circumference covered by an axisymmetric body 1.
     thickness_factor : float or None
         Thickness that forces of plane models refer to; twice the key's in half models [m].
+    mesh_files : str or None
+        Paths of the mesh files, for messages; None if the mesh is made by the program.
     zones : dict of str to str
         Parts of bodies that may have their own material, and the body of each.
     set_of : dict of str to str
@@ -132,6 +134,7 @@ class Geometry(Section):
     along_paths: ClassVar[bool] = True
     sector: ClassVar[float] = 1.0
     thickness_factor: ClassVar[float | None] = None
+    mesh_files: ClassVar[str | None] = None
     zones: ClassVar[dict[str, str]] = {}
     set_of: ClassVar[dict[str, str]] = {}
 

@@ -149,7 +149,7 @@ class Case(Section):
         history = self.load.history
         if history is not None and history.force is not None:
             return max(history.force)
-        area = self.geometry.contact_area()
+        area = None if self.load.mean_pressure is None else self.geometry.contact_area()
         if self.load.mean_pressure is not None and area is not None:
             return self.load.mean_pressure * area
         return self.load.force
@@ -222,6 +222,7 @@ class Case(Section):
             zone = self.geometry.expected_zone(self.pressing())
         mesh = self.geometry.build(self.mesh, zone)
         nodes = len(mesh.cells) * self.mesh.degree ** mesh.points.shape[1]
+        nodes /= 5 if mesh.cell_type == "tetrahedron" else 1  # five or six fill a hexahedron
         if nodes > _MOST_NODES:
             raise CaseError(
                 f"mesh: {len(mesh.cells)} cells of degree {self.mesh.degree} have about "

@@ -33,8 +33,8 @@ def check(case: Case) -> None:
     cut = case.model == "3d" and (case.geometry.symmetry or case.geometry.rollers)
     if cut and case.geometry.rotation_center is not None and friction > 0.0:
         note(
-            "geometry: planes of symmetry cut a sector from rotating bodies; the shear of friction, "
-            "which twists the whole ring, is left out (its heat and wear are not)"
+            "geometry: planes of symmetry cut a sector from rotating bodies; the shear of "
+            "friction, which twists the whole ring, is left out (its heat and wear are not)"
         )
     for name, law in case.wear.items():
         if law.rate is None and "per" not in law.model_fields_set and friction > 0.0:

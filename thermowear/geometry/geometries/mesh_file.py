@@ -20,10 +20,13 @@ from ...case.tables.geometry import keyed
 from ...case.tables.plane_geometry import HalvableGeometry
 from ...case.values.section import MODEL, KeyFault, UserFile
 from ...case.values.units import Area, Coordinate, Length
-from ..reading.assembly import Named, assemble, divided
+from ..reading.assembly import assemble, divided
+from ..reading.contents import MeshContents, joined
 from ..reading.file_contents import read_contents
 from ..reading.mesh_checks import check_mesh
+from ..reading.named import Named
 from ..reading.pair_checks import check_pair
+from ..reading.solid_pairs import projected_area
 from ..reading.solid_surfaces import check_solid_mesh
 
 _KEYS = {
@@ -59,8 +62,11 @@ class MeshFile(HalvableGeometry):
 
     Attributes
     ----------
-    path : str
+    path : str or None
         ``.msh``, ``.inp``, ``.vtu``, ``.xdmf`` or ``.med``.
+    paths : dict of str to str
+        Files by body, instead of ``path``, if each body has a file of its own. A surface may be in
+        any of them; of one name in both it is united.
     length_unit : float
         Length of one unit of the file [m].
     body_names : dict of str to str or tuple of str
@@ -80,7 +86,8 @@ class MeshFile(HalvableGeometry):
         Key ``surfaces``: names in the file of further surfaces, or of those above, by their names
         in the case.
     contact_area_given : float or None
-        Key ``contact_area``: area for a mean pressure [m²].
+        Key ``contact_area``: area for a mean pressure, in space by default the lesser one of both
+        faces, projected along the load [m²].
     """
 
     name = "file"
@@ -88,7 +95,8 @@ class MeshFile(HalvableGeometry):
     from_file = True
 
     type: Literal["file"]
-    path: UserFile
+    path: UserFile | None = None
+    paths: dict[str, UserFile] = {}
     length_unit: Length = 1.0
     body_names: dict[str, CellSets] = Field(alias="bodies")
     contact_names: tuple[str, str] = Field(alias="contact")
@@ -103,6 +111,7 @@ class MeshFile(HalvableGeometry):
     contact_area_given: Area | None = Field(alias="contact_area", default=None)
     _with_material: dict[str, tuple[str, ...]] = PrivateAttr(default={})
     _in_space: bool = PrivateAttr(default=False)
+    _measured: float | None = PrivateAttr(default=None)
 
     @model_validator(mode="after")
     def _complete(self, info: ValidationInfo):
@@ -111,6 +120,12 @@ class MeshFile(HalvableGeometry):
             raise KeyFault(
                 "bodies", f"needs two bodies, the held one first; found {len(self.body_names)}"
             )
+        if self.paths and self.path is not None:
+            raise KeyFault("paths", "only one of path and paths can be given")
+        if self.paths and set(self.paths) != set(self.body_names):
+            raise KeyFault("paths", f"needs a file for each of: {', '.join(self.bodies)}")
+        if not self.paths and self.path is None:
+            raise KeyFault("path", "missing")
         if self._in_space:
             self._check_space()
         else:
@@ -145,9 +160,10 @@ class MeshFile(HalvableGeometry):
 
     @model_serializer(mode="wrap")
     def _by_keys(self, handler) -> dict[str, Any]:
-        plane = ("half", "thickness") if self._in_space else ("rollers", "rotation_center")
+        left_out = {"half", "thickness"} if self._in_space else {"rollers", "rotation_center"}
+        left_out |= set() if self.paths else {"paths"}
         found = {_KEYS.get(name, name): value for name, value in handler(self).items()}
-        return {name: value for name, value in found.items() if name not in plane}
+        return {name: value for name, value in found.items() if name not in left_out}
 
     contact: ClassVar[Any] = keyed(attrgetter("contact_names"))
     held: ClassVar[Any] = keyed(attrgetter("held_name"))
@@ -165,6 +181,10 @@ class MeshFile(HalvableGeometry):
     def thickness_factor(self) -> float | None:
         return None if self._in_space else super().thickness_factor
 
+    @keyed
+    def mesh_files(self) -> str | None:
+        return self.path or " and ".join(self.paths.values())
+
     def rollers_of(self, body: str) -> tuple[str, ...]:
         """All surfaces on rollers, which may belong to both bodies, for the first one."""
         return self.rollers if body == self.bodies[0] else ()
@@ -178,7 +198,10 @@ class MeshFile(HalvableGeometry):
         return tuple(self._purposes())
 
     def contact_area(self) -> float | None:
-        return self.contact_area_given
+        if self._in_space and self.contact_area_given is None and self._measured is None:
+            mesh = self.build(None, None)
+            self._measured = min(projected_area(mesh, face) for face in self.contact)
+        return self.contact_area_given or self._measured
 
     @keyed
     def set_of(self) -> dict[str, str]:
@@ -207,9 +230,12 @@ class MeshFile(HalvableGeometry):
         return result
 
     def build(self, mesh, zone):
-        contents = read_contents(Path(self.path), 3 if self._in_space else 2)
+        contents = self._contents()
         contents = replace(contents, points=contents.points * self.length_unit)
-        bodies = [Named(b, self.sets_of(b), f"geometry.bodies.{b}") for b in self.bodies]
+        bodies = [
+            Named(b, self.sets_of(b), f"geometry.bodies.{b}", index)
+            for index, b in enumerate(self.bodies)
+        ]
         tagged = assemble(contents, bodies, list(self._purposes().values()))
         sets = [
             Named(f"{body}.{name}", (name,), f"bodies.{body}.materials.{name}", index)
@@ -217,6 +243,14 @@ class MeshFile(HalvableGeometry):
             for name in self._with_material.get(body, ())
         ]
         return divided(tagged, contents, bodies, sets)
+
+    def _contents(self) -> MeshContents:
+        """Contents of the file, or of those of both bodies."""
+        dim = 3 if self._in_space else 2
+        if self.path is not None:
+            return read_contents(Path(self.path), dim)
+        files = {body: f"geometry.paths.{body}" for body in self.bodies}
+        return joined([read_contents(Path(self.paths[b]), dim, key) for b, key in files.items()])
 
     def check(self, mesh, case):
         if self._in_space:

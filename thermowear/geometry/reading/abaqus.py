@@ -35,6 +35,7 @@ _SIDES = {
 """Corners of the sides S1, S2, … of elements."""
 _SHELL_FACES = {"triangle": np.array([(0, 1, 2)]), "quad": np.array([(0, 1, 2, 3)])}
 """Corners of the sides SPOS and SNEG of shells and membranes, which cover cells in space."""
+_NO_SIDES = np.empty((0, 2), dtype=np.int64)
 _FACETS = {2: "line", 3: "triangle", 4: "quad"}
 _LINES = {2: "line", 3: "line3"}
 _REFUSED = {
@@ -208,9 +209,9 @@ def _facets(
     result: dict[int, list[np.ndarray]] = {}
     for side, parts in members.items():
         for kind, (numbers, nodes) in elements.items():
-            sides_of_kind = (_SIDES if side else _SHELL_FACES).get(kind.rstrip("0123456789"), [])
+            every = (_SIDES if side else _SHELL_FACES).get(kind.rstrip("0123456789"), _NO_SIDES)
             chosen = np.isin(numbers, np.concatenate(parts))
-            for corners in sides_of_kind[max(side - 1, 0) :][:1] if chosen.any() else ():
+            for corners in every[max(side - 1, 0) :][:1] if chosen.any() else ():
                 result.setdefault(len(corners), []).append(nodes[chosen][:, corners])
     return result
 

@@ -38,7 +38,9 @@ def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named])
         One line, reported at the key at fault.
     """
     found = [_cells_of(contents, body) for body in bodies]
-    used = np.unique(np.concatenate([np.unique(block.nodes) for block in found]))
+    used = np.zeros(len(contents.points), dtype=bool)
+    for block in found:
+        used[block.nodes] = True
     points = _placed(contents, used)
     shapes = {(block.corners, block.nodes.shape[1]) for block in found}
     _check_one_type("geometry.bodies: different", shapes, contents.dim)

@@ -116,7 +116,8 @@ class MeshContents:
 def joined(files: list[MeshContents]) -> MeshContents:
     """Contents of several files, each with one body, as if they were one."""
     starts = np.cumsum([0] + [len(of.points) for of in files])
-    blocks, node_sets = [], {}
+    blocks: list[CellBlock] = []
+    node_sets: dict[str, np.ndarray] = {}
     for body, (of, start) in enumerate(zip(files, starts, strict=False)):
         blocks += [CellBlock(b.kind, b.nodes + start, b.sets, body) for b in of.blocks]
         for name, nodes in of.node_sets.items():
@@ -140,8 +141,13 @@ def numbering(numbers: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
     if len(double):
         raise ValueError(f"node {ordered[double[0]]} is defined twice")
 
+    without_gaps = len(ordered) > 0 and ordered[-1] - ordered[0] == len(ordered) - 1
+
     def positions(wanted: np.ndarray) -> np.ndarray:
-        at = np.searchsorted(ordered, wanted)
+        if without_gaps:
+            at = np.clip(wanted - ordered[0], 0, len(ordered))
+        else:
+            at = np.searchsorted(ordered, wanted)
         missing = at == len(ordered)
         missing[~missing] = ordered[at[~missing]] != wanted[~missing]
         if missing.any():

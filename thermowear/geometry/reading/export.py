@@ -9,6 +9,7 @@ import numpy as np
 
 from ...errors import CaseError
 from ..mesh.tagged import TaggedMesh, compact, quadratic
+from .contents import VTK_ORDER
 
 _MESHIO_CELLS = {
     "interval": ("line", 2),
@@ -18,9 +19,6 @@ _MESHIO_CELLS = {
     "hexahedron": ("hexahedron", 8),
 }
 """Meshio's name of straight cells, to which that of others adds their number of nodes."""
-_QUADRATIC_HEXAHEDRON = [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]
-_QUADRATIC_HEXAHEDRON += [22, 23, 21, 24, 20, 25, 26]
-"""Permutation from gmsh's node order to that of meshio and VTK."""
 _FORMATS = {".msh": "gmsh22", ".vtu": "vtu", ".xdmf": "xdmf", ".inp": "abaqus"}
 
 
@@ -54,10 +52,11 @@ def write_mesh(
     check_ending(path)
     if path.suffix != ".msh" and mesh.order > 2:
         mesh = quadratic(mesh)
-    if mesh.cells.shape[1] == len(_QUADRATIC_HEXAHEDRON):
-        mesh = replace(mesh, cells=mesh.cells[:, _QUADRATIC_HEXAHEDRON])
-        if path.suffix == ".inp":  # supports no nodes inside facets
-            mesh = compact(replace(mesh, cells=mesh.cells[:, :20], facets=mesh.facets[:, :8]))
+    kind, _ = _block(mesh.cell_type, mesh.cells)
+    if kind in VTK_ORDER:
+        mesh = replace(mesh, cells=mesh.cells[:, np.argsort(VTK_ORDER[kind])])
+    if kind == "hexahedron27" and path.suffix == ".inp":  # supports no nodes inside facets
+        mesh = compact(replace(mesh, cells=mesh.cells[:, :20], facets=mesh.facets[:, :8]))
     cells = [_block(mesh.cell_type, mesh.cells), _block(mesh.facet_type, mesh.facets)]
     n = len(mesh.bodies)
     # one numbering for both dimensions, so that a tag is unique in every format

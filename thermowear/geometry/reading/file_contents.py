@@ -49,30 +49,28 @@ class _Kind(NamedTuple):
     read: Callable[[Path, int], MeshContents]
 
 
-def read_contents(path: Path, dim: int = 2) -> MeshContents:
+def read_contents(path: Path, dim: int = 2, key: str = "geometry.path") -> MeshContents:
     """Read a mesh file with bodies of a dimension; its ending selects the format.
 
     Raises
     ------
     CaseError
-        One line, reported at ``geometry.path``.
+        One line, reported at the key.
     """
     kind = _KINDS.get(path.suffix.lower())
     if kind is None:
-        raise CaseError(
-            f"geometry.path: {path}: unknown file ending; must be one of: {', '.join(_KINDS)}"
-        )
+        raise CaseError(f"{key}: {path}: unknown file ending; must be one of: {', '.join(_KINDS)}")
     try:
         _check_file(path, kind, _LARGEST[dim])
         contents = kind.read(path, dim).checked(dim)
     except OSError as error:
-        raise CaseError(f"geometry.path: {path} cannot be read: {error.strerror}") from None
+        raise CaseError(f"{key}: {path} cannot be read: {error.strerror}") from None
     except Exception as error:  # readers raise any exception for a malformed file
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise CaseError(f"geometry.path: {path} cannot be read: {reason}") from None
+        raise CaseError(f"{key}: {path} cannot be read: {reason}") from None
     if not any(block.dim == dim for block in contents.blocks):
         kinds = "plane cells" if dim == 2 else "tetrahedra or hexahedra"
-        raise CaseError(f"geometry.path: {path} has no {kinds}")
+        raise CaseError(f"{key}: {path} has no {kinds}")
     return contents
 
 

@@ -36,7 +36,8 @@ class Named:
 
     def members(self, block: CellBlock) -> np.ndarray:
         """Indices of the elements of a block that are in the sets."""
-        found = [block.sets[name] for name in self.sets if name in block.sets]
+        names = self.sets if self._may_own(block) else ()
+        found = [block.sets[name] for name in names if name in block.sets]
         return np.unique(np.concatenate([np.empty(0, dtype=np.int64), *found]))
 
     def cells(self, contents: MeshContents) -> list[tuple[CellBlock, np.ndarray]]:

@@ -110,7 +110,7 @@ def _bent(
     """Mask of cells (n, nodes, 3) that are not affine images of the unit cell."""
     places, edges = reference_nodes(kind, order), affine[:, 1:] - affine[:, :1]
     off = np.abs(x - x[:, :1] - np.einsum("qd,cdi->cqi", places, edges)).max(axis=(1, 2))
-    size = np.ptp(x, axis=1).max(axis=1)
+    size = np.abs(edges).max(axis=(1, 2))
     return ~(off * size**2 <= _AFFINE * np.abs(volume))
 
 

@@ -9,7 +9,8 @@ import scipy
 
 from ...case.tables.geometry import Geometry
 from ...errors import CaseError
-from ..mesh.nodes import reference_nodes, shape_functions
+from ...lagrange import gauss
+from ..mesh.nodes import reference_nodes, shape_functions, slopes
 from ..mesh.tagged import TaggedMesh
 from .solid_checks import at
 
@@ -87,9 +88,12 @@ def compared_solids(mesh: TaggedMesh, geometry: Geometry) -> SolidFaces:
 
 
 def projected_area(mesh: TaggedMesh, surface: str) -> float:
-    """Area of a surface projected along z [m²]."""
-    x = _triangles(mesh, surface)
-    return float(abs(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])[:, 2].sum()) / 2)
+    """Area of a surface projected along z, exact for its curved facets [m²]."""
+    kind, order = mesh.facet_type, mesh.order
+    points, weights = gauss(2 * order, kind)
+    tangents = slopes(kind, order, points)
+    s, t = np.einsum("qdk,fki->dfqi", tangents, mesh.points[mesh.facets_of(surface)])
+    return float(abs(np.sum(_cross(s, t) @ weights)))
 
 
 def _triangles(mesh: TaggedMesh, surface: str) -> np.ndarray:

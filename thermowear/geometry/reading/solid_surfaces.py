@@ -28,8 +28,8 @@ def check_solid_mesh(mesh: TaggedMesh, geometry: Geometry) -> None:
     """
     mesh = whole_bodies(mesh, geometry)
     _check_shared_facets(mesh)
-    for body, surface in enumerate(geometry.contact):
-        _check_surface(mesh, surface, body)
+    for index, surface in enumerate(geometry.contact):
+        _check_surface(mesh, surface, index)
     for body, surface in zip(geometry.bodies, (geometry.held, geometry.fixed), strict=True):
         _check_pieces_held(mesh, body, surface)
     for key, axis in _PLANES.items():

@@ -79,7 +79,7 @@ class CaseMeshes:
 
     @property
     def path(self) -> str | None:
-        return self.geometry.path if self.geometry.from_file else None  # type: ignore[attr-defined]
+        return self.geometry.mesh_files
 
     def mesh(self, zone: Zone | None) -> TaggedMesh:
         return self.case.tagged_mesh(zone)

@@ -138,7 +138,7 @@ def active_set(
     pressing : callable
         Next active set of a solution.
     """
-    tried = set()
+    tried: set[bytes] = set()
     while active.tobytes() not in tried and len(tried) < _MAX_SETS:
         tried.add(active.tobytes())
         solution = solve(active)

@@ -5,18 +5,16 @@ Each geometry is a subclass in the room ``geometry``.
 
 from __future__ import annotations
 
-import importlib
 import math
 from abc import abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any, ClassVar, get_args
+from typing import Any, ClassVar, get_args
 
-from pydantic import BeforeValidator, SerializeAsAny, ValidationInfo, model_validator
+from pydantic import model_validator
 from pydantic.fields import FieldInfo
 
-from ...errors import quoted
-from ..values.section import MODEL, KeyFault, Section, UserFile
+from ..values.section import KeyFault, Section, UserFile
 from ..values.units import Length
 
 KNOWN: dict[str, type[Geometry]] = {}
@@ -288,29 +286,3 @@ def _is_length(field: FieldInfo) -> bool:
     """Test whether a key holds a length greater than 0, or may do so."""
     optional = (getattr(part, "__metadata__", ()) for part in get_args(field.annotation))
     return any(Length.__metadata__[0] in marks for marks in (field.metadata, *optional))
-
-
-def known_geometries() -> dict[str, type[Geometry]]:
-    """All geometries that a case file can name, sorted by name.
-
-    Imports their room by name where this has not been done yet, as that room imports this one.
-    """
-    importlib.import_module("thermowear.geometry.geometries")
-    return dict(sorted(KNOWN.items()))
-
-
-def _pick(data: Any, info: ValidationInfo) -> Any:
-    if isinstance(data, Geometry):
-        return data
-    if not isinstance(data, dict):
-        raise ValueError(f"found {quoted(data)}; must be a table")
-    known, name = known_geometries(), data.get("type")
-    if "type" not in data:
-        raise KeyFault("type", f"missing; one of: {', '.join(known)}")
-    if not isinstance(name, str) or name not in known:
-        raise KeyFault("type", f"found {quoted(name)}; must be one of: {', '.join(known)}")
-    context = (info.context or {}) | {MODEL: info.data.get("model")}
-    return known[name].model_validate(data, context=context)
-
-
-AnyGeometry = Annotated[SerializeAsAny[Geometry], BeforeValidator(_pick)]

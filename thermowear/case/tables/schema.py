@@ -17,7 +17,8 @@ from ..values import units
 from ..values.section import Number, Section, Switch, number_or
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
-from .geometry import AnyGeometry, Pressing
+from .geometry import Pressing
+from .geometry_choice import AnyGeometry
 from .laws import Friction, law_of
 from .materials import BodyTable, Properties
 from .tabulated import FactorHistory, MultiplierTables, TimeHistory

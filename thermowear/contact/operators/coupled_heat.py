@@ -19,7 +19,14 @@ from ...bulk.heat.conduction import Conduction
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
 from .condensation import transfer_matrix
-from .heat import NO_HEAT_SINK, BaselineResponse, FaceHeat, ThermalState
+from .heat import (
+    NO_HEAT_SINK,
+    BaselineResponse,
+    FaceHeat,
+    HeatExchange,
+    InterfaceHeat,
+    ThermalState,
+)
 
 _TOLERANCE = 1e-9
 """Reduction of the temperature jump in perfect contact."""
@@ -135,3 +142,7 @@ class CoupledExchange:
         """Values of a nodal rise (n_owned,) at the points of both faces, shape (n,) each."""
         first, second = (sum_over_ranks(self._comm, t.T @ rise) for t in self._face.traces)
         return first, second
+
+
+AnyFace = InterfaceHeat | CoupledHeat
+AnyExchange = HeatExchange | CoupledExchange

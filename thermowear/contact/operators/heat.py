@@ -62,6 +62,12 @@ class BaselineResponse:
     rise: tuple[np.ndarray, np.ndarray]
     opening: np.ndarray | None = None
 
+    @property
+    def unheated(self) -> ThermalState:
+        """State of the faces without any heat at the contact."""
+        zeros = np.zeros(len(self.rise[0]))
+        return ThermalState(self.rise, (zeros, zeros))
+
 
 @dataclass(frozen=True)
 class FaceHeat:

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...bulk.heat.conduction import Conduction
 from ...contact.operators.condensation import condense_distortion, condense_heat
-from ...contact.operators.coupled_heat import CoupledExchange, CoupledHeat
+from ...contact.operators.coupled_heat import AnyExchange, AnyFace
 from ...contact.operators.heat import (
     BaselineResponse,
     HeatExchange,
@@ -27,8 +27,6 @@ from ..system.conditions import InterfaceConditions
 from ..system.system import SetupCache, System
 from ..system.thermal_system import ThermalLoad, ThermalSystem
 
-AnyFace = InterfaceHeat | CoupledHeat
-AnyExchange = HeatExchange | CoupledExchange
 _ROUNDING = 1e-3
 """Least scale of the heat balance, relative to the initial heat content (rounding)."""
 
@@ -108,8 +106,8 @@ class HeatOperators:
 
     def __init__(self, system: System, conduction: Conduction, face: AnyFace):
         self.conduction, self.face, self._system = conduction, face, system
-        condensed = isinstance(face, InterfaceHeat)
-        self.distorts = condensed and system.model.interface.method.name == "condensed"
+        method = system.model.interface.method.name
+        self.distorts = method == "condensed" and isinstance(face, InterfaceHeat)
         self._exchange: tuple[bytes, AnyExchange] | None = None
         self._compliance: tuple[HeatExchange, bytes, np.ndarray] | None = None
 
@@ -151,8 +149,7 @@ class HeatOperators:
 
     def condensed_exchange(self, conductance: np.ndarray) -> HeatExchange:
         """Heat exchange of condensed bodies, which contact solvers need."""
-        exchange = self.exchange(conductance)
-        assert isinstance(exchange, HeatExchange)
+        assert isinstance(exchange := self.exchange(conductance), HeatExchange)
         return exchange
 
     def compliance(self, exchange: HeatExchange, heating: np.ndarray, basis: np.ndarray):
@@ -162,12 +159,6 @@ class HeatOperators:
             per_heat = self.distortion.per_friction_heat(exchange)
             last = self._compliance = exchange, key, per_heat @ scaled(heating, basis)
         return last[2]
-
-
-def unheated(baseline: BaselineResponse) -> ThermalState:
-    """State of the faces without any heat at the contact."""
-    zeros = np.zeros(len(baseline.rise[0]))
-    return ThermalState(baseline.rise, (zeros, zeros))
 
 
 @dataclass(eq=False)

@@ -9,7 +9,6 @@ import numpy as np
 
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat, friction_heat
-from ..heat.heat_steps import unheated
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
 from .body_state import ContactState
@@ -70,7 +69,7 @@ class InterfaceProblem(WearProblem):
             faces = None if heat is None else heat.faces(conditions, contact.pressure)
             return InterfaceState(worn, contact, faces=faces)
 
-        faces = None if heat is None else unheated(heat.baseline)
+        faces = None if heat is None else heat.baseline.unheated
         start = Trial(self._guess.pressure, faces, worn)
         return self_consistent(self._condition_model, time, start, respond, _UNWORN)[1]
 
@@ -128,7 +127,7 @@ class InterfaceProblem(WearProblem):
         pointwise: np.ndarray | None = None,
     ) -> InterfaceState:
         """Contact at given temperatures."""
-        guess = InterfaceState(worn, self._guess, faces=unheated(heat.baseline))
+        guess = InterfaceState(worn, self._guess, faces=heat.baseline.unheated)
         conditions = self.conditions(guess, time)
         contact = self._solve(worn, conditions, heat, pointwise)
         return replace(guess, contact=contact, stored=heat.stored)

@@ -8,7 +8,6 @@ import numpy as np
 
 from ...laws.principle.steady import SteadyWear, steady_pressure
 from ..heat.friction_heat import friction_heat
-from ..heat.heat_steps import unheated
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
 from .body_state import ContactState
@@ -48,7 +47,7 @@ def steady_state(system: System) -> SteadyState:
     area = float(system.weights.sum())
     uniform = np.full(len(system.weights), (system.model.holder.force or area) / area)
     zeros = np.zeros((len(system.laws), len(uniform)))
-    start = Trial(uniform, None if heat is None else unheated(heat.steps.steady.baseline), zeros)
+    start = Trial(uniform, None if heat is None else heat.steps.steady.baseline.unheated, zeros)
 
     wear: SteadyWear | None = None
 

@@ -810,8 +810,10 @@ HOLDERS = [
         "wear.strip.spread", "no unique steady pressure", STRIP),
     Bad("spread nowhere", {"wear.punch.spread": "thin"}, "wear.punch.spread", "must be", STRIP),
     Bad("material of no part", {"bodies.bolt": {"like": "drum"}}, "bodies.bolt", "lining", DRUM),
-    Bad("nitsche in space", {"contact.method": "nitsche"}, "contact.method",
-        "does not support 3d models", BOX),
+    Bad("nitsche and a disk in space",
+        {"contact.method": "nitsche", "analysis": {"type": "transient", "end_time": "1 s"},
+         "wear.disk": {"coefficient": "1e-8 1/MPa", "per": "friction-stress", "spread": "track"}},
+        "contact.method", "does not support wear spread over the track", "disk-sector"),
     Bad("pad all the way and more", {"geometry.pad_angle": "400 deg"},
         "geometry.pad_angle", "at most 360 deg", PADS),
 ]  # fmt: skip

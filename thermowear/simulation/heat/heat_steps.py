@@ -106,8 +106,8 @@ class HeatOperators:
 
     def __init__(self, system: System, conduction: Conduction, face: AnyFace):
         self.conduction, self.face, self._system = conduction, face, system
-        method = system.model.interface.method.name
-        self.distorts = method == "condensed" and isinstance(face, InterfaceHeat)
+        method, condensed = system.model.interface.method.name, isinstance(face, InterfaceHeat)
+        self.distorts = method == "condensed" and condensed
         self._exchange: tuple[bytes, AnyExchange] | None = None
         self._compliance: tuple[HeatExchange, bytes, np.ndarray] | None = None
 
@@ -149,7 +149,8 @@ class HeatOperators:
 
     def condensed_exchange(self, conductance: np.ndarray) -> HeatExchange:
         """Heat exchange of condensed bodies, which contact solvers need."""
-        assert isinstance(exchange := self.exchange(conductance), HeatExchange)
+        exchange = self.exchange(conductance)
+        assert isinstance(exchange, HeatExchange)
         return exchange
 
     def compliance(self, exchange: HeatExchange, heating: np.ndarray, basis: np.ndarray):
@@ -293,8 +294,6 @@ class HeatSteps:
 
     def _condense(self, conduction: Conduction) -> InterfaceHeat:
         """Conduction of a time step or a tangent condensed to the interface; every rank calls."""
-        face = self._thermal.face
+        f = self._thermal.face
         with self._system.phases("condense conduction"):
-            return condense_heat(
-                conduction, face.weights, face.basis, face.traces, face.shift, face.partition
-            )
+            return condense_heat(conduction, f.weights, f.basis, f.traces, f.shift, f.partition)

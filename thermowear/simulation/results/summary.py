@@ -47,7 +47,7 @@ def summarise(end: Snapshot, time: float) -> dict:
     rates = interface.wear_rate_1 + interface.wear_rate_2
     worn = interface.pressure > 0
     depths = np.array([interface.wear_1, interface.wear_2])
-    volumes = system.worn_volumes(depths)
+    volumes = (system.worn_areas * (depths - system.moved)).sum(axis=1) + system.lost
     summary = {
         "model": model.kinematics,
         "method": model.interface.method.name,

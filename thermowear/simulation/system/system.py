@@ -248,9 +248,10 @@ class System:
             return np.zeros((2, len(self.weights)))
         return self.worn.moved(self.pairing)
 
-    def worn_volumes(self, depths: np.ndarray) -> np.ndarray:
-        """Worn volumes of both bodies for wear depths (2, n) [m], shape (2,) [m³]."""
-        return ((depths - self.moved) / self.coverage) @ self.weights + self.lost
+    @cached_property
+    def worn_areas(self) -> np.ndarray:
+        """Areas worn to the depth of each point, whole tracks included, shape (2, n) [m²]."""
+        return self.weights / self.coverage
 
     @property
     def influence(self) -> Influence:

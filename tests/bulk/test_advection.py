@@ -8,7 +8,7 @@ from dolfinx.fem.petsc import assemble_vector
 
 from thermowear import load
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import as_function, owned
+from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.heat.advection import Passage
 
 from ..conftest import DEMOS
@@ -243,3 +243,21 @@ def test_bodies_that_stay_are_left_alone():
         other[disk] = random_rise(still)[disk]
         before, after = (times(getattr(found, name), other) for found in (still, moving))
         assert largest(after - before) > 1e-3 * largest(before)
+
+
+def test_uniform_temperature_along_paths_needs_rows_of_cells():
+    """requirement: an unstructured mesh is refused, rather than conducting across paths alone."""
+    from thermowear.bulk.heat.even_paths import EvenPaths
+    from thermowear.errors import CaseError
+
+    from ..contact.solids import bent, gathered, straight, two_solids
+
+    passage = Passage(("lower",), None, 1.0, spread=True)
+    for place, refused in ((straight, False), (bent, True)):
+        bodies, _ = gathered(two_solids(maps=(place, place), cell_type="tetrahedron"))
+        space = lagrange_space(bodies.mesh, 1)
+        if refused:
+            with pytest.raises(CaseError, match="rows of cells along the motion of 'lower'"):
+                EvenPaths(bodies, space, passage)
+        else:
+            EvenPaths(bodies, space, passage)

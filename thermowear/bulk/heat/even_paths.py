@@ -12,6 +12,7 @@ import numpy as np
 import scipy.sparse as sp
 from dolfinx import fem
 
+from ...errors import CaseError
 from ...parallel import sum_over_ranks
 from ..bodies import Bodies
 from ..direct_solver import DirectSolver
@@ -20,6 +21,9 @@ from .advection import Passage
 
 _PATH_TOLERANCE = 1e-9
 """Tolerance for identifying paths, relative to the range of their coordinates."""
+
+_LEAST_NODES = 1.9
+"""Least mean number of nodes on a path: a mesh without rows of cells has about one."""
 
 
 class EvenPaths:
@@ -46,6 +50,11 @@ class EvenPaths:
         height = space.tabulate_dof_coordinates()[self._passing, 2]
         places = np.column_stack([ψ.x.array[self._passing], height])
         self._path, self._paths = _path_numbers(self._comm, places)
+        if sum_over_ranks(self._comm, len(places)) < _LEAST_NODES * self._paths:
+            raise CaseError(
+                f"heat.advection: 'spread' needs rows of cells along the motion of "
+                f"{passage.parts[0]!r}, whose mesh has none; use 'resolved'"
+            )
 
     def whole(self, fixed: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Extend prescribed temperatures (n_owned,) to whole paths (mean on each path)."""

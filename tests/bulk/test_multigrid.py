@@ -109,7 +109,7 @@ def test_the_solver_is_chosen_by_memory_and_size(monkeypatch):
     assert choose_solver("auto", bodies, 2, True).name == "direct"
     assert choose_solver("multigrid", bodies, 2, False).iterative
     assert 1e8 < choose_solver("auto", bodies, 2, True).available < 1e14
-    monkeypatch.setattr(solver_choice, "_MANY", 100)
+    monkeypatch.setattr(solver_choice, "_MANY", {"tetrahedron": 100, "hexahedron": 100})
     assert choose_solver("auto", bodies, 2, True).iterative
     assert not choose_solver("auto", bodies, 2, False).iterative
     assert not choose_solver("direct", bodies, 2, True).iterative

@@ -49,6 +49,7 @@ BARE = {
     "model": {"case", "reference", "bulk", "contact"},
 }
 """Packages that must not be imported although the order would allow it."""
+MOST_LINES = 300
 MOST_MODULES = 14
 """Largest number of modules in a folder, unless they are all of one kind."""
 OF_A_KIND = {"geometry/geometries", "reference", "verification/cases"}
@@ -132,6 +133,12 @@ def test_folders_are_small():
         modules = [path for path in folder.glob("*.py") if path.name != "__init__.py"]
         kind = folder.relative_to(ROOT).as_posix()
         assert len(modules) <= MOST_MODULES or kind in OF_A_KIND, folder
+
+
+def test_modules_are_short():
+    """requirement: a module is one concept, of at most 300 lines."""
+    lengths = {module: len(path.read_text().splitlines()) for module, path in SOURCES.items()}
+    assert {module: n for module, n in lengths.items() if n > MOST_LINES} == {}
 
 
 def test_no_class_name_is_used_twice():

@@ -11,7 +11,7 @@ import thermowear as tw
 from thermowear.bulk.direct_solver import DirectSolver
 from thermowear.simulation.analyses.run import Series, groups
 from thermowear.simulation.from_case import analysis_of, model_of
-from thermowear.simulation.system.system import inputs
+from thermowear.simulation.system.setup_cache import inputs
 
 from ..conftest import DEMOS
 

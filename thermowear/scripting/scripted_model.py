@@ -23,7 +23,8 @@ from ..model.model import Discretisation, Model, Solver
 from ..simulation.analyses.run import needs_single_solution, solve
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.building import build
-from ..simulation.system.system import SetupCache, System
+from ..simulation.system.setup_cache import SetupCache
+from ..simulation.system.system import System
 from ..timer import Phases
 from .body import BodySurface, MeshBody
 from .conversion import number

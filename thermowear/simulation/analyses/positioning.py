@@ -10,7 +10,8 @@ from ...model.model import Model
 from ...timer import Phases
 from ..interface.interface_problem import interface_problem
 from ..system.building import build
-from ..system.system import SetupCache, System
+from ..system.setup_cache import SetupCache
+from ..system.system import System
 
 _ITERATIONS = 12
 _TOLERANCE = 0.1  # relative to the element at the edge

@@ -30,7 +30,8 @@ from ..geometry_update.wider_zone import reaches_open_end
 from ..results.recording import Snapshot, sample
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
-from ..system.system import SetupCache, System, inputs
+from ..system.setup_cache import SetupCache, inputs
+from ..system.system import System
 from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
 from .positioning import prepare
 from .static import initial, stability, steady

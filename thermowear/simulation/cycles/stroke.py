@@ -15,7 +15,8 @@ from ...errors import CaseError
 from ...model.analyses import ReciprocatingAnalysis
 from ..system.contact_points import contact_points
 from ..system.rigid_modes import rigid_modes
-from ..system.system import SetupCache, System
+from ..system.setup_cache import SetupCache
+from ..system.system import System
 
 _UNPAIRED = 1e-6
 

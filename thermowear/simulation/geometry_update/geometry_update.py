@@ -22,7 +22,8 @@ from ...serialise import serialisable
 from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.sdirk import InterfaceState
 from ..system.building import build
-from ..system.system import SetupCache, System
+from ..system.setup_cache import SetupCache
+from ..system.system import System
 from ..system.worn_geometry import WornGeometry, along
 from .moving_faces import MovingFaces, gap_of_initial_shape, movable_body
 from .remesh import FLOOR, carrying_error, improved, on_new_faces

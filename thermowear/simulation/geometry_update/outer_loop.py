@@ -22,7 +22,8 @@ from ..interface.sdirk import InterfaceState, advance_with_error
 from ..interface.steady import SteadyState
 from ..runtime.observer import Observer
 from ..system.building import build
-from ..system.system import SetupCache, System
+from ..system.setup_cache import SetupCache
+from ..system.system import System
 from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import updated
 from .moving_faces import MovingFaces, smoothed_wear

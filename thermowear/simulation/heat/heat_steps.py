@@ -24,7 +24,8 @@ from ...contact.operators.pressure import scaled
 from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions
-from ..system.system import SetupCache, System
+from ..system.setup_cache import SetupCache
+from ..system.system import System
 from ..system.thermal_system import ThermalLoad, ThermalSystem
 
 _ROUNDING = 1e-3

@@ -20,7 +20,8 @@ from ...contact.full.nitsche import (
 from ...contact.wear.implicit_step import WearRates
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..system.system import SetupCache, System
+from ..system.setup_cache import SetupCache
+from ..system.system import System
 from .contact_solver import ContactSolution
 from .fixed_point import AndersonMixing
 

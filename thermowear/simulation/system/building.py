@@ -26,7 +26,8 @@ from .contact_points import (
     worn_contact_points,
 )
 from .rigid_modes import dead_load, dead_resultant, rigid_modes
-from .system import SetupCache, System, inputs
+from .setup_cache import SetupCache, inputs
+from .system import System
 from .thermal_system import coupled_without_condensation, thermal_system
 from .worn_geometry import WornGeometry
 

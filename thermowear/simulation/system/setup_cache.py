@@ -1,0 +1,88 @@
+"""Cache of set-up results (mesh, factors, condensed operators) shared by the cases of a sweep."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
+
+from ...model.model import Model, Zone
+from .contact_points import softness_of_parts
+
+Part = TypeVar("Part")
+
+
+class SetupCache:
+    """Cache of the last part of each kind, with its inputs as key.
+
+    Cases with equal inputs share the same object.
+    """
+
+    def __init__(self) -> None:
+        self._kept: dict[str, tuple[Any, Any]] = {}
+
+    def get(self, kind: str, inputs: Any, make: Callable[[], Part]) -> Part:
+        """Return the cached part of a kind if its inputs are equal; make it otherwise."""
+        made_from, part = self._kept.get(kind, (None, None))
+        if made_from is None or made_from != inputs:
+            self._kept.pop(kind, None)  # frees its memory before the new part is made
+            part = make()
+            self._kept[kind] = (inputs, part)
+        return part
+
+
+@dataclass(frozen=True)
+class CacheKeys:
+    """Inputs of the cached parts of a system; independent of loads, friction and wear laws.
+
+    Attributes
+    ----------
+    mesh : tuple
+        Inputs of the meshed bodies.
+    points : tuple
+        Inputs of the contact points.
+    elasticity : tuple
+        Inputs of the factorised and the condensed elastic bodies.
+    conduction : tuple
+        Inputs of the factorised conduction, its condensation and the distortion.
+    """
+
+    mesh: tuple
+    points: tuple
+    elasticity: tuple
+    conduction: tuple
+
+    def solved_by(self, solver: str, coupled: bool) -> CacheKeys:
+        """Keys for a solver of the bodies, with heat exchange coupled without condensation or not.
+
+        Those of condensed bodies with a direct solver are unchanged.
+        """
+        own = () if solver == "direct" else (solver,)
+        exchange = ("coupled",) if coupled else ()
+        return replace(
+            self,
+            elasticity=(*self.elasticity, *own),
+            conduction=(*self.conduction, *own, *exchange),
+        )
+
+
+def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
+    """Cache keys of a model meshed for a zone (by default the expected contact zone)."""
+    interface, materials, heat = model.interface, model.materials, model.heat
+    zone = model.expected_zone if zone is None else zone
+    section = model.kinematics, model.thickness, model.sector, model.symmetry
+    spaces = model.discretisation.degree, interface.pressure_degree
+    mesh = (section, model.meshes, spaces, zone)
+    shares = softness_of_parts(model), bool(interface.wearing_in_place)
+    points = (mesh, interface.initial_shape, shares)
+    strained = {part: (m.young_modulus, m.poisson_ratio) for part, m in materials.items()}
+    if heat is None:
+        return CacheKeys(mesh, points, (points, strained), ())
+    expanding = {part: (m.expansion, m.expansion_factor) for part, m in materials.items()}
+    elasticity = (points, strained, expanding)
+    conducting = {
+        part: (m.conductivity, m.conductivity_factor, m.density, m.specific_heat)
+        for part, m in materials.items()
+    }
+    carried = model.motion if heat.advection == "resolved" else None
+    return CacheKeys(mesh, points, elasticity, (elasticity, conducting, heat, carried))

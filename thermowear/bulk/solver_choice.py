@@ -13,12 +13,12 @@ from pathlib import Path
 from petsc4py import PETSc
 
 import numpy as np
-from dolfinx import fem
 
 from .bodies import Bodies
 from .direct_solver import DirectSolver
 from .field import reference_element
 from .multigrid_solver import MultigridSolver
+from .spaces import Spaces
 
 AnySolver = DirectSolver | MultigridSolver
 """Solver of the equations of the bodies; both have the same methods."""
@@ -98,11 +98,12 @@ def choose_solver(asked: str, bodies: Bodies, degree: int, single: bool) -> Solv
     single : bool
         True if the analysis needs a single solution and no compliance.
     """
-    comm = bodies.mesh.comm
-    if bodies.mesh.topology.dim == 2:
+    if bodies.dim == 2:
         return SolverChoice(reason="section")
-    kind, unknowns = bodies.mesh.topology.cell_name(), count_unknowns(bodies.mesh, degree)
-    memory, available = factor_memory(unknowns), comm.bcast(available_memory(), root=0)
+    sizes = [count_unknowns(body.mesh, degree) for body in bodies.each]
+    memory, unknowns = sum(map(factor_memory, sizes)), sum(sizes)
+    kind = bodies.each[int(np.argmax(sizes))].mesh.topology.cell_name()
+    available = bodies.comm.bcast(available_memory(), root=0)
     name, reason = asked, "as given"
     if asked == "auto":
         name, reason = "direct", "the factor fits into the memory"
@@ -125,7 +126,7 @@ def count_unknowns(mesh, degree: int) -> int:
 
 
 def factor_memory(unknowns: int) -> float:
-    """Estimated memory of the factor of a stiffness in space [bytes]."""
+    """Estimated memory of the factor of the stiffness of a body in space [bytes]."""
     reference, size, exponent = _MEASURED
     return size * (unknowns / reference) ** exponent
 
@@ -148,10 +149,10 @@ def available_memory() -> float:
 def linear_solver(
     choice: SolverChoice,
     matrix: PETSc.Mat,
-    space: fem.FunctionSpace,
+    spaces: Spaces,
     fixed: np.ndarray,
     symmetry: str = "definite",
-    coarse: Callable[[fem.FunctionSpace], PETSc.Mat] | None = None,
+    coarse: Callable[[Spaces], PETSc.Mat] | None = None,
 ) -> AnySolver:
     """Set up the chosen solver of a matrix. Every rank calls.
 
@@ -160,7 +161,7 @@ def linear_solver(
     choice : SolverChoice
     matrix : petsc4py.PETSc.Mat
         Assembled, with the rows and columns of fixed values eliminated.
-    space : dolfinx.fem.FunctionSpace
+    spaces : Spaces
     fixed : ndarray of bool, shape (n_owned,)
     symmetry : str
         See `DirectSolver`; indefinite symmetric matrices are always factorised.
@@ -168,5 +169,5 @@ def linear_solver(
         See `MultigridSolver`.
     """
     if choice.iterative and symmetry in ("definite", "none"):
-        return MultigridSolver(matrix, space, fixed, coarse, symmetric=symmetry == "definite")
-    return DirectSolver(matrix, symmetry, dim=space.mesh.topology.dim)
+        return MultigridSolver(matrix, spaces, fixed, coarse, symmetric=symmetry == "definite")
+    return DirectSolver(matrix, symmetry, dim=spaces.dim)

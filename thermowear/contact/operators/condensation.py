@@ -12,6 +12,7 @@ import scipy.sparse as sp
 
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
+from ...bulk.spaces import Spaces
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
 from .heat import FaceHeat, InterfaceHeat, ThermalDistortion
@@ -109,7 +110,7 @@ def influence(
     thermal_loads : sequence of petsc4py.PETSc.Mat
         Matrices G of nodal forces per nodal rise, from `Elasticity.thermal_load`.
     """
-    dim = elastic.bodies.mesh.geometry.dim
+    dim = elastic.bodies.dim
     weighted = scaled(pairing.weights, basis)
     # only nodes of cells at the contact are loaded: 2 % of the rows
     loads = (trace @ sp.csr_matrix(weighted)).tocsc()
@@ -129,7 +130,7 @@ def influence(
         touching,
         np.hstack(near),
         tuple(np.hstack(products) for products in per_rise),
-        elastic.space.mesh.comm,
+        elastic.bodies.comm,
     )
 
 
@@ -166,11 +167,11 @@ def condense_heat(
 
     Every rank calls.
     """
-    comm = conduction.space.mesh.comm
+    comm = conduction.spaces.comm
     # the bodies are uncoupled in the bulk: one solution serves a column of both faces
     heat = ((traces[0] + traces[1]) @ sp.diags(weights)).tocsc()
     found = []
-    for columns in blocks(len(weights), conduction.space.mesh.topology.dim):
+    for columns in blocks(len(weights), conduction.spaces.dim):
         field = conduction.respond(heat[:, columns].tocsr())
         found.append([trace.T @ field for trace in traces])
     Θ1, Θ2 = (sum_over_ranks(comm, np.hstack(columns)) for columns in zip(*found, strict=True))
@@ -192,24 +193,24 @@ def condense_distortion(
         Weak gap per nodal rise, see `Influence` [m³/K].
     face : FaceHeat
     """
-    mesh, found = conduction.space.mesh, []
-    for columns in blocks(per_rise.shape[1], mesh.topology.dim):
+    spaces, found = conduction.spaces, []
+    for columns in blocks(per_rise.shape[1], spaces.dim):
         adjoint = conduction.adjoint_response(per_rise[:, columns])
         found.append([(trace.T @ adjoint).T * face.weights for trace in face.traces])
     first, second = (
-        sum_over_ranks(mesh.comm, np.vstack(rows)) for rows in zip(*found, strict=True)
+        sum_over_ranks(spaces.comm, np.vstack(rows)) for rows in zip(*found, strict=True)
     )
     return ThermalDistortion((first, second))
 
 
-def bath_matrix(space, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
+def bath_matrix(spaces: Spaces, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
     """Matrix ``Σ E_iᵀ w s E_i`` of the bath at both faces, for `bulk.conduction`; collective."""
-    first, second = (transfer_matrix(space, trace, weights * shift) for trace in traces)
+    first, second = (transfer_matrix(spaces, trace, weights * shift) for trace in traces)
     first.axpy(1.0, second, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     return first
 
 
-def transfer_matrix(space, trace: sp.csr_matrix, sizes: np.ndarray) -> PETSc.Mat:
+def transfer_matrix(spaces: Spaces, trace: sp.csr_matrix, sizes: np.ndarray) -> PETSc.Mat:
     """Matrix ``Eᵀ diag(sizes) E`` of a transposed trace Eᵀ and sizes (n,) >= 0; collective."""
-    root = distributed(space, (trace @ sp.diags(np.sqrt(sizes))).tocsr())
+    root = distributed(spaces, (trace @ sp.diags(np.sqrt(sizes))).tocsr())
     return root.matMult(root.copy().transpose())

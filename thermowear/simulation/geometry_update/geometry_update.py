@@ -224,8 +224,10 @@ def _followed(
         return moved, lost
 
     moved, lost = on_root(system.comm, outlined)
-    follow = HarmonicExtension(system.bodies.mesh)
-    return replace(worn.mesh, points=worn.mesh.points + follow(moved)), lost
+    for body in system.bodies.each:
+        numbers = system.comm.bcast(body.point_numbers)
+        moved[numbers] = HarmonicExtension(body.mesh)(moved[numbers])
+    return replace(worn.mesh, points=worn.mesh.points + moved), lost
 
 
 def _remeshed(
@@ -255,9 +257,8 @@ def _carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.n
     assert after.thermal is not None
     return transferred(
         rise,
-        before.thermal.conduction.space,
-        after.thermal.conduction.space,
+        before.thermal.conduction.spaces,
+        after.thermal.conduction.spaces,
         before.bodies,
         after.bodies,
-        [body.parts for body in before.model.bodies],
     )

@@ -172,6 +172,6 @@ def _kept_sizes(system: System, thermal: ThermalSystem) -> int:
     """Number of step sizes whose operators fit into the memory; every rank calls."""
     conduction, points = thermal.conduction, len(thermal.face.weights)
     dense, nodes = 12 * points**2, len(conduction.fixed)
-    numbers = dense + _FILL[conduction.space.mesh.topology.dim] * nodes
+    numbers = dense + _FILL[conduction.spaces.dim] * nodes
     least = min(system.comm.allgather(_MEMORY / (8 * numbers)))
     return max(int(least), _FEWEST)

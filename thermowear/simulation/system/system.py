@@ -88,7 +88,7 @@ class System:
 
     @cached_property
     def comm(self):
-        return self.bodies.mesh.comm
+        return self.bodies.comm
 
     @cached_property
     def zone(self) -> Zone | None:
@@ -221,4 +221,4 @@ class System:
         """Traces of the displacement along each coordinate, shape (n_owned, n) each."""
         n, gdim = self.traction_direction.shape
         units = (np.tile(unit, (n, 1)) for unit in np.eye(gdim))
-        return [vector_trace(self.elastic.space, self.pairing, unit) for unit in units]
+        return [vector_trace(self.elastic.spaces, self.pairing, unit) for unit in units]

@@ -143,8 +143,8 @@ def _body(tagged, comm, shape, names, surfaces, tags: np.ndarray | None) -> Body
     present: np.ndarray = comm.bcast(tags)
     return BodyMesh(
         mesh=mesh,
-        cell_tags=_tags(mesh, tdim, cells, cell_tags),
-        facet_tags=_tags(mesh, tdim - 1, facets, facet_tags),
+        cell_tags=distributed_tags(mesh, tdim, cells, cell_tags),
+        facet_tags=distributed_tags(mesh, tdim - 1, facets, facet_tags),
         names=names,
         surfaces=surfaces,
         parts=tuple(names[tag - 1] for tag in present),
@@ -171,7 +171,8 @@ def created_mesh(comm, kind: str, order: int, cells: np.ndarray, points: np.ndar
     return dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=element)
 
 
-def _tags(mesh, dim: int, entities: np.ndarray, values: np.ndarray):
+def distributed_tags(mesh, dim: int, entities: np.ndarray, values: np.ndarray):
+    """Tags of cells or facets, by their nodes as when the mesh was created. Every rank calls."""
     mesh.topology.create_connectivity(mesh.topology.dim, dim)
     mesh.topology.create_connectivity(dim, 0)
     mesh.topology.create_connectivity(dim, mesh.topology.dim)

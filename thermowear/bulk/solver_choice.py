@@ -27,8 +27,10 @@ _MEASURED = 61_605, 0.49e9, 1.40
 """Unknowns and bytes of a factor in space, and its growth exponent: measured for bodies of one
 block with elements of degree 2, from 6e4 to 1.8e5 unknowns."""
 _PART = 0.4
-"""Part of the available memory that a factor may take: a second one (of heat), the matrices and
-the workspace of the factorisation need the rest."""
+"""Part of the available memory that the factors of all bodies may take: those of heat, the matrices
+and the workspace of the factorisation need the rest."""
+_PART_MEANWHILE = 0.6
+"""Part of it that the factor of one body may take while its compliance is computed."""
 _MANY = {"tetrahedron": 60_000, "hexahedron": 300_000}
 """Unknowns from which a single solution is faster by multigrid than by a factorisation. Flat
 hexahedra, as of graded meshes of blocks, need three times the iterations (48 instead of 15): at
@@ -49,7 +51,9 @@ class SolverChoice:
     unknowns : int
         Unknowns of the displacement.
     factor_memory : float
-        Estimated memory of a factor of the stiffness; NaN in a section [bytes].
+        Estimated memory of the factors of the stiffness; NaN in a section [bytes].
+    largest_factor : float
+        That of the body with most unknowns [bytes].
     available : float
         Memory available on this machine [bytes].
     single : bool
@@ -60,6 +64,7 @@ class SolverChoice:
     name: str = "direct"
     unknowns: int = 0
     factor_memory: float = float("nan")
+    largest_factor: float = float("inf")
     available: float = float("nan")
     single: bool = False
     reason: str = "default"
@@ -68,6 +73,11 @@ class SolverChoice:
     def iterative(self) -> bool:
         """True for multigrid."""
         return self.name == "multigrid"
+
+    @property
+    def factorises_columns(self) -> bool:
+        """True if a body is factorised for the time of its condensation alone."""
+        return self.iterative and self.largest_factor <= _PART_MEANWHILE * self.available
 
     def note(self) -> str | None:
         """Line for the console; None for small bodies and sections, which are factorised."""
@@ -101,7 +111,8 @@ def choose_solver(asked: str, bodies: Bodies, degree: int, single: bool) -> Solv
     if bodies.dim == 2:
         return SolverChoice(reason="section")
     sizes = [count_unknowns(body.mesh, degree) for body in bodies.each]
-    memory, unknowns = sum(map(factor_memory, sizes)), sum(sizes)
+    factors, unknowns = [factor_memory(size) for size in sizes], sum(sizes)
+    memory = sum(factors)
     kind = bodies.each[int(np.argmax(sizes))].mesh.topology.cell_name()
     available = bodies.comm.bcast(available_memory(), root=0)
     name, reason = asked, "as given"
@@ -111,7 +122,7 @@ def choose_solver(asked: str, bodies: Bodies, degree: int, single: bool) -> Solv
             name, reason = "multigrid", "the factor would not fit into the memory"
         elif single and unknowns >= _MANY[kind] and degree <= _LOW_DEGREE:
             name, reason = "multigrid", "faster for a single solution"
-    return SolverChoice(name, unknowns, memory, available, single, reason)
+    return SolverChoice(name, unknowns, memory, max(factors), available, single, reason)
 
 
 def count_unknowns(mesh, degree: int) -> int:

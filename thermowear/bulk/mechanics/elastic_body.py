@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -15,10 +16,10 @@ from dolfinx import default_scalar_type, fem
 
 from ..body_mesh import BodyMesh
 from ..compiled import assembled_matrix
-from ..direct_solver import multiply
+from ..direct_solver import DirectSolver, multiply
 from ..field import without_fixed
 from ..kinematics import Kinematics, section_measure
-from ..solver_choice import AnySolver
+from ..solver_choice import AnySolver, SolverChoice
 
 
 @dataclass(frozen=True)
@@ -115,18 +116,39 @@ class ElasticBody(ElasticForms):
         Mask of values held at zero.
     support_rows : petsc4py.PETSc.Mat
         Rows of the stiffness of these values, for the support reactions.
+    matrix : petsc4py.PETSc.Mat
+        Stiffness with the rows and columns of these values eliminated.
     factor : DirectSolver or MultigridSolver
-        Solver of the supported stiffness.
+        Its solver.
+    choice : SolverChoice
     """
 
     space: fem.FunctionSpace
     fixed: np.ndarray
     support_rows: PETSc.Mat
+    matrix: PETSc.Mat
     factor: AnySolver
+    choice: SolverChoice
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Displacements [m] due to nodal loads [N]; owned rows, one or several columns."""
         return self.factor.solve(without_fixed(loads, self.fixed))
+
+    @contextmanager
+    def solver_of_columns(self) -> Iterator[AnySolver]:
+        """Solver for many columns of loads, zero in the fixed values.
+
+        Where single loads are solved for by multigrid it is a factor that exists meanwhile, if one
+        of this body fits into the memory: a column then costs a hundredth. Every rank calls.
+        """
+        if not self.choice.factorises_columns:
+            yield self.factor
+            return
+        factor = DirectSolver(self.matrix, dim=self.body.mesh.topology.dim)
+        try:
+            yield factor
+        finally:
+            factor.destroy()
 
     def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Support reactions [N], owned rows; zero in the free values."""

@@ -153,7 +153,8 @@ def _elastic_body(
         return forms.stiffness(linear.each[0])
 
     factor = linear_solver(choice, matrix, Spaces((space,)), fixed, coarse=coarse)
-    return ElasticBody(forms.body, forms.kinematics, forms.lame, space, fixed, support_rows, factor)
+    solved = support_rows, matrix, factor, choice
+    return ElasticBody(forms.body, forms.kinematics, forms.lame, space, fixed, *solved)
 
 
 def supported(stiffness: PETSc.Mat, fixed: np.ndarray) -> PETSc.Mat:

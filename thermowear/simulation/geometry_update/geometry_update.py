@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...balances import relative, require
-from ...bulk.mesh_motion import HarmonicExtension
+from ...bulk.mesh_motion import extended
 from ...bulk.transfer import transferred
 from ...contact.search.face import Surface
 from ...contact.search.refinement import Rule
@@ -224,10 +224,7 @@ def _followed(
         return moved, lost
 
     moved, lost = on_root(system.comm, outlined)
-    for body in system.bodies.each:
-        numbers = system.comm.bcast(body.point_numbers)
-        moved[numbers] = HarmonicExtension(body.mesh)(moved[numbers])
-    return replace(worn.mesh, points=worn.mesh.points + moved), lost
+    return replace(worn.mesh, points=worn.mesh.points + extended(system.bodies, moved)), lost
 
 
 def _remeshed(

@@ -12,6 +12,7 @@ from .cases.fuel_fretting import fuel_fretting
 from .cases.geometry_updates import block_on_ring, deep_wear, pin_on_disc
 from .cases.growing import growing_cylinder, growing_sphere
 from .cases.hertz import flat_punch, hertz_line, hertz_sphere
+from .cases.hertz_in_space import hertz_elliptical, hertz_sphere_3d, hertz_sphere_3d_fine
 from .cases.instability import half_plane_instability, sliding_rod
 from .cases.minimality import minimality
 from .cases.moving_band import moving_band
@@ -22,7 +23,8 @@ from .cases.transient_heat import braking_stop, step_flux
 from .check import Check, all_checks, compare, identified
 
 _CASES = SPECIAL_CASES | dict.fromkeys((
-    annular_punch, running_in, patch, patch_3d, hertz_line, hertz_sphere, flat_punch,
+    annular_punch, running_in, patch, patch_3d, hertz_line, hertz_sphere, hertz_sphere_3d,
+    hertz_sphere_3d_fine, hertz_elliptical, flat_punch,
     methods_agree, mindlin, growing_cylinder, growing_sphere, block_on_ring, pin_on_disc,
     deep_wear, beam_shakedown, fretting_wear, fretting_cylinder, fuel_fretting,
     reciprocating, moving_band, two_slabs, pressure_conductance, temperature_dependent,
@@ -35,7 +37,7 @@ CASES = {
 }
 """Verification cases by id in the order of ``verify``; each yields its checks."""
 
-SLOW = frozenset({"deep-wear"})
-"""Cases that take more than two minutes."""
+SLOW = frozenset({"deep-wear", "hertz-sphere-3d-fine"})
+"""Cases of several minutes or much memory."""
 
 __all__ = ["CASES", "SLOW", "Check", "all_checks", "compare"]

@@ -17,5 +17,7 @@ from .interface import (
     HardnessConductance,
     Interface,
     PinTrack,
+    TabulatedTrack,
+    Track,
 )
 from .model import Discretisation, MeshSource, Model

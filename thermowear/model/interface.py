@@ -66,6 +66,32 @@ class CircularTrack:
 
 
 @dataclass(frozen=True)
+class TabulatedTrack:
+    """Circles of a disk under a face of any outline, each worn evenly.
+
+    Attributes
+    ----------
+    center : tuple of float
+        x and y of the axis of the disk [m].
+    radii : tuple of float
+        Distances from it, increasing [m].
+    duty : tuple of float
+        Fractions of a turn for which points of the disk at these distances are in the contact.
+    """
+
+    center: tuple[float, float]
+    radii: tuple[float, ...]
+    duty: tuple[float, ...]
+
+    def distribution(
+        self, points: np.ndarray, weights: np.ndarray, thickness: float
+    ) -> Distribution:
+        """Distribution of the wear; see `FaceWear.distribution`."""
+        radii = np.linalg.norm(points[:, :2] - np.array(self.center), axis=1)
+        return rings(radii, weights, np.interp(radii, self.radii, self.duty))
+
+
+@dataclass(frozen=True)
 class PinTrack:
     """Circles of a disk under a round pin, each worn evenly.
 
@@ -102,6 +128,10 @@ class PinTrack:
         return np.array(self.center) + self.distance * arm / np.linalg.norm(arm)
 
 
+Track = EvenTrack | CircularTrack | TabulatedTrack | PinTrack
+"""Tracks of a body that passes the contact."""
+
+
 @dataclass(frozen=True)
 class FaceWear:
     """Wear of one face.
@@ -113,7 +143,7 @@ class FaceWear:
         Tabulated factors of the rate, by the temperature of the face, the pressure and the speed.
     friction_exponent : float
         Exponent of the coefficient of friction in a law per friction stress; 0 in other laws.
-    track : Distribution, EvenTrack, CircularTrack or PinTrack
+    track : Distribution or Track
         In place, at a constant duty factor, or along a track that passes the contact.
     per : str or None
         Stress that a coefficient of wear multiplies, for the summary; None for other laws.
@@ -122,7 +152,7 @@ class FaceWear:
     law: Law
     factors: Multipliers = field(default_factory=Multipliers)
     friction_exponent: float = 0.0
-    track: Distribution | EvenTrack | CircularTrack | PinTrack = field(default_factory=InPlace)
+    track: Distribution | Track = field(default_factory=InPlace)
     per: str | None = None
 
     @property

@@ -14,6 +14,9 @@ from .pad_outline import PadOutline
 _SAME = 1e-7
 """Tolerance for positions of nodes on a surface, by the width of the pad."""
 
+_SEAM = math.radians(100)
+"""Angle of the section that is rotated: seams of surfaces lie there, not in planes of pictures."""
+
 
 class BrakeSizes(Protocol):
     """Dimensions of pad and disk, see `disk_brake_3d.DiskBrakeInSpace`."""
@@ -161,7 +164,8 @@ class DrawnBrake:
         section += [(sizes.disk_outer_radius, 0.0), (hat, 0.0), (hat, height)]
         section += [(sizes.bore_radius, height), (sizes.bore_radius, height - thickness)]
         section += [(inside, height - thickness)]
-        points = [occ.addPoint(r, 0.0, z) for r, z in (self._lengths(*p) for p in section)]
+        x, y = math.cos(_SEAM), math.sin(_SEAM)
+        points = [occ.addPoint(r * x, r * y, z) for r, z in (self._lengths(*p) for p in section)]
         lines = [occ.addLine(a, b) for a, b in zip(points, points[1:] + points[:1], strict=True)]
         surface = [(2, occ.addPlaneSurface([occ.addWire(lines)]))]
         turned = occ.revolve(surface, 0, 0, 0, 0, 0, 1, 2 * math.pi)

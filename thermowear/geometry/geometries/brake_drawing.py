@@ -1,4 +1,4 @@
-"""Drawing of a brake pad and a disk with hat for gmsh, and the names of their surfaces."""
+"""Drawing of a brake pad and the section of a disk with hat, and the names of their surfaces."""
 
 from __future__ import annotations
 
@@ -13,9 +13,6 @@ from .pad_outline import PadOutline
 
 _SAME = 1e-7
 """Tolerance for positions of nodes on a surface, by the width of the pad."""
-
-_SEAM = math.radians(100)
-"""Angle of the section that is rotated: seams of surfaces lie there, not in planes of pictures."""
 
 
 class BrakeSizes(Protocol):
@@ -51,7 +48,7 @@ class BrakeSizes(Protocol):
 
 @dataclass(frozen=True)
 class DrawnBrake:
-    """Pad and disk; the outline of the pad is part of the disk's face.
+    """Pad, and section of the disk, whose cells have edges along the sides of the pad.
 
     Attributes
     ----------
@@ -65,22 +62,10 @@ class DrawnBrake:
         """Length in which it is drawn [m]."""
         return self.sizes.outline.width
 
-    def draw(self, names: tuple[str, ...], occ) -> dict[str, list[int]]:
-        """Draw some of the bodies; returns their volumes by name."""
-        pad, disk = self._pad(occ), []
-        tools = [(2, self._piston(occ))]
-        if "disk" in names:
-            disk = [(3, self._disk(occ))]
-            tools += [(2, self._hub(occ))]
-            if not self.sizes.half:
-                tools += [(2, self._opposite(occ, pad[0]))]
-        parts = occ.fragment(pad + disk, tools)[1]
-        found = [[tag for dim, tag in part if dim == 3] for part in parts]
-        drawn = {"pad": sum(found[: len(pad)], []), "disk": sum(found[len(pad) : len(pad) + 1], [])}
-        occ.remove([entity for part in parts for entity in part if entity[0] == 2], recursive=False)
-        if "pad" not in names:
-            occ.remove([(3, tag) for tag in drawn["pad"]], recursive=True)
-        return {name: drawn[name] for name in names}
+    def draw_pad(self, occ) -> dict[str, list[int]]:
+        """Draw the pad with the outline of the piston; returns its volumes by its name."""
+        parts = occ.fragment(self._pad(occ), [(2, self._piston(occ))])[0]
+        return {"pad": [tag for dim, tag in parts if dim == 3]}
 
     def _lengths(self, *lengths: float) -> tuple[float, ...]:
         return tuple(length / self.unit for length in lengths)
@@ -155,47 +140,27 @@ class DrawnBrake:
         )
         return occ.addDisk(x, 0, z, radius, radius)
 
-    def _disk(self, occ) -> int:
-        """Ring and hat, by rotation of their section."""
-        sizes = self.sizes
+    def section(self) -> np.ndarray:
+        """Corners of the section of ring and hat, by distance from the axis and z, (n, 2) [m].
+
+        Also the points of rubbed faces below the edges of the pad.
+        """
+        sizes, outline = self.sizes, self.sizes.outline
         hat, thickness, height = sizes.hat_radius, sizes.hat_thickness, sizes.hat_height
-        bottom, inside = -sizes.ring_thickness, hat - thickness
-        section = [(inside, bottom), (sizes.disk_outer_radius, bottom)]
-        section += [(sizes.disk_outer_radius, 0.0), (hat, 0.0), (hat, height)]
-        section += [(sizes.bore_radius, height), (sizes.bore_radius, height - thickness)]
-        section += [(inside, height - thickness)]
-        x, y = math.cos(_SEAM), math.sin(_SEAM)
-        points = [occ.addPoint(r * x, r * y, z) for r, z in (self._lengths(*p) for p in section)]
-        lines = [occ.addLine(a, b) for a, b in zip(points, points[1:] + points[:1], strict=True)]
-        surface = [(2, occ.addPlaneSurface([occ.addWire(lines)]))]
-        turned = occ.revolve(surface, 0, 0, 0, 0, 0, 1, 2 * math.pi)
-        occ.remove(surface, recursive=True)
-        return next(tag for dim, tag in turned if dim == 3)
-
-    def _hub(self, occ) -> int:
-        """Surface of the flange up to the radius of the hub."""
-        sizes = self.sizes
-        z, radius = self._lengths(sizes.hat_height - sizes.hat_thickness, sizes.hub_radius)
-        return occ.addDisk(0, 0, z, radius, radius)
-
-    def _opposite(self, occ, lining: tuple[int, int]) -> int:
-        """Face of the lining, moved to the other side of the disk."""
-        (depth,) = self._lengths(self.sizes.ring_thickness)
-        occ.synchronize()
-        low = 1e-3
-        face = next(
-            tag for dim, tag in _boundary(occ, lining) if occ.getBoundingBox(dim, tag)[5] < low
-        )
-        ((_, tag),) = occ.copy([(2, face)])
-        occ.translate([(2, tag)], 0, 0, -depth)
-        return tag
+        bottom, inside, outside = -sizes.ring_thickness, hat - thickness, sizes.disk_outer_radius
+        far = [] if sizes.half else [(outline.inner, bottom), (outline.outer, bottom)]
+        corners = [(inside, bottom), *far, (outside, bottom), (outside, 0.0)]
+        corners += [(outline.outer, 0.0), (outline.inner, 0.0), (hat, 0.0), (hat, height)]
+        corners += [(sizes.bore_radius, height), (sizes.bore_radius, height - thickness)]
+        flange = height - thickness
+        return np.array([*corners, (sizes.hub_radius, flange), (inside, flange)])
 
     def claims(self) -> dict[str, Claim]:
         """Predicates of all surfaces, see `tagged_bodies`."""
         sizes, outline = self.sizes, self.sizes.outline
         top, bottom = sizes.pad_thickness + sizes.plate_thickness, -sizes.ring_thickness
         flange = sizes.hat_height - sizes.hat_thickness
-        under = _middle_in(outline)
+        under = both(self._between(outline.inner, outline.outer), _around(outline.widest))
         disk = {
             "disk_face": both(self._at(0.0), under),
             "disk_rest": self._at(0.0),
@@ -211,7 +176,7 @@ class DrawnBrake:
             "pad_sides": every,
             **disk,
             "disk_outside": self._on_radius(sizes.disk_outer_radius),
-            "disk_hub": both(self._at(flange), self._on_hub),
+            "disk_hub": both(self._at(flange), self._between(0.0, sizes.hub_radius)),
             "disk_inside": self._on_radius(sizes.hat_radius - sizes.hat_thickness),
             "disk_hat": every,
         }
@@ -228,21 +193,27 @@ class DrawnBrake:
             np.abs(np.hypot(p[..., 0], p[..., 1]) - radius) < self._tolerance, axis=1
         )
 
+    def _between(self, inner: float, outer: float) -> Claim:
+        """Predicate of the facets with all nodes between two distances from the axis."""
+
+        def claim(p: np.ndarray) -> np.ndarray:
+            r = np.hypot(p[..., 0], p[..., 1])
+            within = (r > inner - self._tolerance) & (r < outer + self._tolerance)
+            return np.all(within, axis=1)
+
+        return claim
+
     def _under_piston(self, p: np.ndarray) -> np.ndarray:
         outline = self.sizes.outline
         away = np.hypot(p[..., 0] - (outline.inner + outline.outer) / 2, p[..., 1])
         return np.all(away < self.sizes.piston_radius + self._tolerance, axis=1)
 
-    def _on_hub(self, p: np.ndarray) -> np.ndarray:
-        return np.all(np.hypot(p[..., 0], p[..., 1]) < self.sizes.hub_radius + self._tolerance, 1)
 
+def _around(half_angle: float) -> Claim:
+    """Predicate of the facets whose middle is within an angle to both sides of the x-axis."""
 
-def _boundary(occ, volume: tuple[int, int]) -> list[tuple[int, int]]:
-    """Surfaces of a volume."""
-    loops, surfaces = occ.getSurfaceLoops(volume[1])
-    return [(2, tag) for loop in surfaces for tag in loop]
+    def claim(p: np.ndarray) -> np.ndarray:
+        x, y, _ = p.mean(axis=1).T
+        return np.abs(np.arctan2(y, x)) < half_angle
 
-
-def _middle_in(outline: PadOutline) -> Claim:
-    """Predicate of the facets whose middle is within an outline."""
-    return lambda p: outline.contains(p.mean(axis=1))
+    return claim

@@ -1,14 +1,15 @@
 """Brake pad with back plate on a disk with hat, in space.
 
 The contact lies at z = 0; the pad is above, about the x-axis. Both bodies consist of curved
-tetrahedra made by gmsh.
+tetrahedra made by gmsh, those of the disk in rows round its axis: the temperature of a fast disk,
+nearly uniform round the axis, is then computed without spurious conduction across the motion.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import replace
-from functools import partial
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -19,6 +20,8 @@ from ...case.values.section import KeyFault
 from ...case.values.units import Angle, Length
 from ..mesh.tagged import TaggedMesh
 from ..meshing.cells import MeshedBody, tagged_bodies
+from ..meshing.divisions import graded_face, growing, joined
+from ..meshing.revolved import check_revolved, mesh_polygon, revolved, row_sizes
 from ..meshing.tetrahedra import SectorZone, mesh_solids
 from .brake_drawing import DrawnBrake
 from .pad_outline import PadOutline
@@ -31,6 +34,14 @@ _CLEARANCE = 0.01
 """Least distance of edges from each other, by the width of the pad."""
 _FAR = 2.0
 """Largest elements by the size of those inside the contact."""
+_FLAT = 1.5
+"""Largest elements of the section of the disk by the thickness of the hat."""
+_AROUND = 3.0
+"""Largest length of the elements of the disk beside the pad by that of those below it."""
+_BESIDE = 0.75
+"""Size ratio of the elements of the disk beside the pad, towards it."""
+_SLICE = math.radians(15)
+"""Largest angle of an element of the disk."""
 _DUTY = 400
 """Number of circles by which the duty factor is tabulated."""
 
@@ -74,7 +85,6 @@ class DiskBrakeInSpace(Geometry):
     held = "pad_piston"
     press_direction = (0.0, 0.0, -1.0)
     rotation_center = (0.0, 0.0)
-    along_paths = False
 
     type: Literal["disk-brake-3d"]
     pad_inner_radius: Length
@@ -101,7 +111,7 @@ class DiskBrakeInSpace(Geometry):
         names = ("bore_radius", "hub_radius", "hat_radius", "pad_inner_radius")
         names += ("pad_outer_radius", "disk_outer_radius")
         room = {"hat_radius": self.hat_thickness}
-        for smaller, larger in zip(names, names[1:], strict=False):
+        for smaller, larger in pairwise(names):
             a, b, less = getattr(self, smaller), getattr(self, larger), room.get(larger, 0.0)
             if not a + less + gap <= b:
                 wall = " less hat_thickness" if less else ""
@@ -197,36 +207,42 @@ class DiskBrakeInSpace(Geometry):
 
     def build(self, mesh, zone=None) -> TaggedMesh:
         drawn, order = DrawnBrake(self), min(mesh.degree, _ORDER)
-        zones = {"pad": self._zone("pad", mesh), "disk": self._zone("disk", mesh)}
-        alike = mesh.face("pad") == mesh.face("disk")
-        groups = [zones] if alike else [{name: zone} for name, zone in zones.items()]
-        bodies: dict[str, MeshedBody] = {}
-        for group in groups:
-            bodies |= mesh_solids(partial(drawn.draw, tuple(group)), group, order, drawn.unit)
-        pad = bodies["pad"]
+        sizes = self._pad_sizes(*mesh.face("pad"))
+        pad = mesh_solids(lambda occ: drawn.draw_pad(occ), {"pad": sizes}, order, drawn.unit)["pad"]
         lining = pad.points[pad.cells[:, :4], 2].mean(axis=1) < self.pad_thickness
-        bodies["pad"] = replace(pad, zones={"lining": np.flatnonzero(lining)})
-        return replace(tagged_bodies(bodies, drawn.claims()), cell_type="tetrahedron")
+        pad = replace(pad, zones={"lining": np.flatnonzero(lining)})
+        disk = self._disk(drawn, order, *mesh.face("disk"))
+        tagged = tagged_bodies({"pad": pad, "disk": disk}, drawn.claims())
+        return replace(tagged, cell_type="tetrahedron")
 
-    def _zone(self, body: str, mesh) -> SectorZone:
-        """Element sizes of a body."""
-        elements, grading = mesh.face(body)
-        outline = self.outline
-        inside = max(outline.length, outline.width) / elements
-        depth, volume = self.pad_thickness + self.plate_thickness, 0.0
-        if body == "disk":
-            inner = self.hat_radius - self.hat_thickness
-            depth = self.ring_thickness
-            ring = self.disk_outer_radius**2 - inner**2
-            wall = self.hat_radius**2 - inner**2
-            flange = inner**2 - self.bore_radius**2
-            volume = math.pi * (
-                ring * depth + wall * self.hat_height + flange * self.hat_thickness
-            )
+    def _largest(self, elements: int) -> float:
+        """Element size inside the contact [m]."""
+        return max(self.outline.length, self.outline.width) / elements
+
+    def _pad_sizes(self, elements: int, grading: float) -> SectorZone:
+        outline, inside = self.outline, self._largest(elements)
         return SectorZone(
             (outline.inner, outline.outer),
             outline.half_angle,
             (inside, grading * inside, _FAR * inside),
-            depth,
-            volume,
+            self.pad_thickness + self.plate_thickness,
         )
+
+    def _disk(self, drawn: DrawnBrake, order: int, elements: int, grading: float) -> MeshedBody:
+        """Rows of cells round the axis, finer below the pad."""
+        outline, inside = self.outline, self._largest(elements)
+        around = max(2, round(2 * outline.widest * outline.middle / inside))
+        below = graded_face(-outline.widest, outline.widest, around, grading)
+        first, widest = float(np.diff(below).min()), min(_AROUND * inside / outline.middle, _SLICE)
+        before, after = (
+            growing(end, math.copysign(math.pi, end), first, _BESIDE, max(widest, first))
+            for end in (-outline.widest, outline.widest)
+        )
+        angles = joined(before, below, after)
+        check_revolved(self.ring_thickness * outline.width, inside, len(angles) - 1)
+        faces = (0.0,) if self.half else (0.0, -self.ring_thickness)
+        radii = outline.inner, outline.outer
+        sizes = row_sizes(radii, faces, (inside, grading * inside), drawn.unit)
+        largest = min(_FAR * inside, _FLAT * self.hat_thickness)
+        points, triangles = mesh_polygon(drawn.section(), sizes, largest, drawn.unit)
+        return revolved(points, triangles, angles, order)

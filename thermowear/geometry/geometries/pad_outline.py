@@ -73,10 +73,10 @@ class PadOutline:
             angle = np.minimum(angle, self.half_angle - np.arcsin(self.chamfer / safe))
         return np.where(inside, np.maximum(angle, 0.0), 0.0)
 
-    def contains(self, points: np.ndarray) -> np.ndarray:
-        """Mask of points (..., 2 or 3) within the flat face, seen along the axis."""
-        x, y = points[..., 0], points[..., 1]
-        return np.abs(np.arctan2(y, x)) < self.half_angle_at(np.hypot(x, y))
+    @cached_property
+    def widest(self) -> float:
+        """Largest half of the angle that the flat face covers [rad]."""
+        return float(self.half_angle_at(np.linspace(self.inner, self.outer, _STEPS)).max())
 
     @cached_property
     def area(self) -> float:
@@ -99,6 +99,11 @@ class PadOutline:
     def duty(self, radii: np.ndarray) -> np.ndarray:
         """Fraction of a turn for which points of the disk are under the pad, shape (n,)."""
         return self.half_angle_at(radii) / math.pi
+
+    @property
+    def middle(self) -> float:
+        """Radius of its mean circle [m]."""
+        return (self.inner + self.outer) / 2
 
     @property
     def length(self) -> float:

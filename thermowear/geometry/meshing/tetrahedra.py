@@ -17,7 +17,7 @@ from .divisions import check_count
 
 MOST_TETRAHEDRA = 1_000_000
 """Largest number of tetrahedra of a body."""
-_GROWTH = 0.35
+GROWTH = 0.35
 """Increase of the element size per distance from the contact."""
 _PER_CUBE = 8.0
 """Number of tetrahedra in a cube of their size."""
@@ -86,13 +86,13 @@ class RoundZone:
         outside = f"(0.5*({beside}+Fabs({beside})))"
         from_zone = f"Sqrt({outside}*{outside}+z*z)"
         from_edge = f"Sqrt({beside}*{beside}+z*z)"
-        return f"{inside}+{_GROWTH}*{from_zone}", f"{edge}+{_GROWTH}*{from_edge}"
+        return f"{inside}+{GROWTH}*{from_zone}", f"{edge}+{GROWTH}*{from_edge}"
 
     def cells(self) -> float:
         """Estimate of the number of tetrahedra of the body."""
-        far = np.geomspace(1e-3 * self.edge, max(self.largest / _GROWTH, self.radius), 400)
-        size = np.minimum(self.inside + _GROWTH * far, self.largest)
-        near_edge = np.minimum(self.edge + _GROWTH * far, self.inside)
+        far = np.geomspace(1e-3 * self.edge, max(self.largest / GROWTH, self.radius), 400)
+        size = np.minimum(self.inside + GROWTH * far, self.largest)
+        near_edge = np.minimum(self.edge + GROWTH * far, self.inside)
         within = math.pi * self.radius**2 / self.inside**2
         shells = np.trapezoid(2 * math.pi * (self.radius + far) ** 2 / size**3, far)
         tori = np.trapezoid(2 * math.pi**2 * self.radius * far / near_edge**3, far)
@@ -114,15 +114,12 @@ class SectorZone:
         Element sizes inside, at the edge, and far away [m].
     depth : float
         Thickness of the body at the contact [m].
-    volume : float
-        Volume of the body beside the contact, for an estimate of the number of cells [m³].
     """
 
     radii: tuple[float, float]
     half_angle: float
     sizes: tuple[float, float, float]
     depth: float
-    volume: float
     per_turn = 12
 
     @property
@@ -149,7 +146,7 @@ class SectorZone:
         within = f"(0.5*({nearest}-Fabs({nearest})))"
         from_zone = f"Sqrt({away}+z*z)"
         from_edge = f"Sqrt({away}+{within}*{within}+z*z)"
-        return f"{inside}+{_GROWTH}*{from_zone}", f"{edge}+{_GROWTH}*{from_edge}"
+        return f"{inside}+{GROWTH}*{from_zone}", f"{edge}+{GROWTH}*{from_edge}"
 
     def cells(self) -> float:
         """Estimate of the number of tetrahedra of the body."""
@@ -158,11 +155,11 @@ class SectorZone:
         area = self.half_angle * (outer**2 - inner**2)
         around = 2 * (outer - inner) + 2 * self.half_angle * (outer + inner)
         away = np.geomspace(1e-3 * edge, max(self.depth, edge), 400)
-        below = np.trapezoid(1 / np.minimum(inside + _GROWTH * away, largest) ** 3, away)
-        near = np.minimum(edge + _GROWTH * away, inside) ** -3 - inside**-3
+        below = np.trapezoid(1 / np.minimum(inside + GROWTH * away, largest) ** 3, away)
+        near = np.minimum(edge + GROWTH * away, inside) ** -3 - inside**-3
         edges = np.trapezoid(math.pi / 2 * away * near, away)
         surface = 1 / inside**2 + below
-        return _PER_CUBE * (area * surface + around * max(edges, 0.0) + self.volume / largest**3)
+        return _PER_CUBE * (area * surface + around * max(edges, 0.0))
 
 
 def mesh_solids(

@@ -20,7 +20,7 @@ from ...case.values.section import KeyFault
 from ...case.values.units import Angle, Length
 from ..mesh.tagged import TaggedMesh
 from ..meshing.cells import MeshedBody, tagged_bodies
-from ..meshing.divisions import graded_face, growing, joined
+from ..meshing.divisions import growing, joined
 from ..meshing.revolved import check_revolved, mesh_polygon, revolved, row_sizes
 from ..meshing.tetrahedra import SectorZone, mesh_solids
 from .brake_drawing import DrawnBrake
@@ -36,7 +36,7 @@ _FAR = 2.0
 """Largest elements by the size of those inside the contact."""
 _FLAT = 1.5
 """Largest elements of the section of the disk by the thickness of the hat."""
-_AROUND = 3.0
+_AROUND = 2.0
 """Largest length of the elements of the disk beside the pad by that of those below it."""
 _BESIDE = 0.75
 """Size ratio of the elements of the disk beside the pad, towards it."""
@@ -231,12 +231,13 @@ class DiskBrakeInSpace(Geometry):
     def _disk(self, drawn: DrawnBrake, order: int, elements: int, grading: float) -> MeshedBody:
         """Rows of cells round the axis, finer below the pad."""
         outline, inside = self.outline, self._largest(elements)
-        around = max(2, round(2 * outline.widest * outline.middle / inside))
-        below = graded_face(-outline.widest, outline.widest, around, grading)
+        around = 2 * max(1, round(outline.widest * outline.middle / inside)) + 1
+        below = np.linspace(-outline.widest, outline.widest, around + 1)
         first, widest = float(np.diff(below).min()), min(_AROUND * inside / outline.middle, _SLICE)
+        far = math.pi + 0.3 * widest  # no ends of layers in the plane y = 0, where pictures are cut
         before, after = (
-            growing(end, math.copysign(math.pi, end), first, _BESIDE, max(widest, first))
-            for end in (-outline.widest, outline.widest)
+            growing(start, end, first, _BESIDE, max(widest, first))
+            for start, end in ((-outline.widest, far - 2 * math.pi), (outline.widest, far))
         )
         angles = joined(before, below, after)
         check_revolved(self.ring_thickness * outline.width, inside, len(angles) - 1)

@@ -29,17 +29,13 @@ from ...laws.power_wear import PowerWear
 from ...model.body import Body, Material
 from ...model.conditions import Heat, Holder, Motion
 from ...model.interface import (
-    CircularTrack,
     ContactMethod,
-    EvenTrack,
     FaceWear,
     HardnessConductance,
     Interface,
-    PinTrack,
-    TabulatedTrack,
-    Track,
 )
 from ...model.model import Discretisation, Model, Zone
+from ...model.tracks import CircularTrack, EvenTrack, PinTrack, TabulatedTrack, Track
 
 
 def model_of(case: Case) -> Model:

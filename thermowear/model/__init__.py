@@ -10,12 +10,10 @@ from .analyses import (
 from .body import Body, Material
 from .conditions import Heat, Holder, Motion
 from .interface import (
-    CircularTrack,
     ContactMethod,
-    EvenTrack,
     FaceWear,
     HardnessConductance,
     Interface,
-    PinTrack,
 )
 from .model import Discretisation, MeshSource, Model
+from .tracks import CircularTrack, EvenTrack, PinTrack, TabulatedTrack, Track

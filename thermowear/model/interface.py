@@ -16,90 +16,12 @@ from ..laws.coefficients import (
     PressureConductance,
     harmonic_mean,
 )
-from ..laws.distribution import Distribution, InPlace, rings, round_duty, uniform_track
+from ..laws.distribution import Distribution, InPlace
 from ..laws.interfaces import Law
 from ..laws.plausible import typical_value
 from ..laws.time_course import TimeFunction
 from .body import WHY, Facing, Material
-
-
-@dataclass(frozen=True)
-class EvenTrack:
-    """Track of a section on which wear is uniform.
-
-    Attributes
-    ----------
-    length : float
-        [m]
-    """
-
-    length: float
-
-    def distribution(
-        self, points: np.ndarray, weights: np.ndarray, thickness: float
-    ) -> Distribution:
-        """Distribution of the wear; see `FaceWear.distribution`."""
-        return uniform_track(weights / thickness / self.length)
-
-
-@dataclass(frozen=True)
-class CircularTrack:
-    """Circles of a disk about a vertical axis, each worn evenly.
-
-    Attributes
-    ----------
-    center : tuple of float
-        x and y of the axis [m].
-    duty : float
-        Fraction of a turn for which a point of the disk is in the contact.
-    """
-
-    center: tuple[float, float]
-    duty: float
-
-    def distribution(
-        self, points: np.ndarray, weights: np.ndarray, thickness: float
-    ) -> Distribution:
-        """Distribution of the wear; see `FaceWear.distribution`."""
-        arms = points[:, :2] - np.array(self.center)
-        return rings(np.linalg.norm(arms, axis=1), weights, self.duty)
-
-
-@dataclass(frozen=True)
-class PinTrack:
-    """Circles of a disk under a round pin, each worn evenly.
-
-    Attributes
-    ----------
-    center : tuple of float
-        x and y of the axis of the disk [m].
-    distance : float
-        Distance of the axis of the pin from it [m].
-    radius : float or None
-        Radius of the contact face, by default the largest distance of a contact point from the axis
-        of the pin: it has no effect if the edge of the face is not in contact [m].
-    """
-
-    center: tuple[float, float]
-    distance: float
-    radius: float | None = None
-
-    def distribution(
-        self, points: np.ndarray, weights: np.ndarray, thickness: float
-    ) -> Distribution:
-        """Distribution of the wear; see `FaceWear.distribution`."""
-        arms = points[:, :2] - np.array(self.center)
-        radii = np.linalg.norm(arms, axis=1)
-        radius = self.radius
-        if radius is None:
-            axis = self._pin_axis(points, weights)
-            radius = float(np.linalg.norm(points[:, :2] - axis, axis=1).max())
-        return rings(radii, weights, round_duty(radii, self.distance, radius))
-
-    def _pin_axis(self, points: np.ndarray, weights: np.ndarray) -> np.ndarray:
-        """X and y of the axis of the pin, in the direction of the middle of the face [m]."""
-        arm = weights @ points[:, :2] / weights.sum() - np.array(self.center)
-        return np.array(self.center) + self.distance * arm / np.linalg.norm(arm)
+from .tracks import Track
 
 
 @dataclass(frozen=True)
@@ -113,7 +35,7 @@ class FaceWear:
         Tabulated factors of the rate, by the temperature of the face, the pressure and the speed.
     friction_exponent : float
         Exponent of the coefficient of friction in a law per friction stress; 0 in other laws.
-    track : Distribution, EvenTrack, CircularTrack or PinTrack
+    track : Distribution or Track
         In place, at a constant duty factor, or along a track that passes the contact.
     per : str or None
         Stress that a coefficient of wear multiplies, for the summary; None for other laws.
@@ -122,7 +44,7 @@ class FaceWear:
     law: Law
     factors: Multipliers = field(default_factory=Multipliers)
     friction_exponent: float = 0.0
-    track: Distribution | EvenTrack | CircularTrack | PinTrack = field(default_factory=InPlace)
+    track: Distribution | Track = field(default_factory=InPlace)
     per: str | None = None
 
     @property

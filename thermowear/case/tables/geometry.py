@@ -92,6 +92,9 @@ class Geometry(Section):
         Length of the track on body 2 that passes under body 1 [m].
     duty : float or None
         Duty factor: fraction of a turn for which a point of body 2 is under body 1, in space.
+    duty_by_radius : tuple of tuple of float or None
+        Distances from the centre of rotation, increasing, and the duty factors there, for faces of
+        other outlines, in space [m] and [-].
     footprint : tuple of float or None
         Distance of a round face from the centre of rotation, and its radius if known, in space [m].
     along_paths : bool
@@ -128,6 +131,7 @@ class Geometry(Section):
     rotation_center: ClassVar[tuple[float, float] | None] = None
     track: ClassVar[float | None] = None
     duty: ClassVar[float | None] = None
+    duty_by_radius: ClassVar[tuple[tuple[float, ...], tuple[float, ...]] | None] = None
     footprint: ClassVar[tuple[float, float | None] | None] = None
     along_paths: ClassVar[bool] = True
     sector: ClassVar[float] = 1.0

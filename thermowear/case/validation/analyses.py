@@ -83,7 +83,8 @@ def _condensed_features(case: Case) -> Iterator[str]:
 def _passes_disk(case: Case) -> bool:
     """True if the wear of a body is averaged along its circles, which couples distant points."""
     geometry, spread = case.geometry, any(w.spread != "in-place" for w in case.wear.values())
-    return spread and (geometry.duty is not None or geometry.footprint is not None)
+    tracks = geometry.duty, geometry.duty_by_radius, geometry.footprint
+    return spread and any(track is not None for track in tracks)
 
 
 def _factors(case: Case) -> Iterator[str]:

@@ -16,6 +16,7 @@ import numpy as np
 
 from ...lagrange import lattice
 from .common_face import MAX_FACING_COSINE, opposite, opposite_parameters
+from .ears import without_folds
 from .face import Surface
 from .projection import within
 
@@ -267,7 +268,7 @@ def _divided(polygons: _Polygons, kind: str) -> tuple[np.ndarray, np.ndarray]:
     """Parts (n, 4, 2) of polygons, and the polygon of each.
 
     Convex polygons are divided from their first corner, into quadrilaterals in those, into
-    triangles in triangles; others into triangles about their mean.
+    triangles in triangles; others into triangles about their mean if it sees all corners.
     """
     p, of, first = polygons.points, polygons.of, polygons.first
     if not len(of):
@@ -283,7 +284,8 @@ def _divided(polygons: _Polygons, kind: str) -> tuple[np.ndarray, np.ndarray]:
     mean = [np.bincount(of, column)[of] / np.bincount(of)[of] for column in p.T]
     following = p[polygons.after]
     about = np.stack([np.column_stack(mean), p, following, following], axis=1)[bent]
+    about, of_bent = without_folds(p, of, about, of[bent])
     corners = np.concatenate([p[origin[:, None] + fan], about])
-    of_part = np.concatenate([of[origin], of[bent]])
+    of_part = np.concatenate([of[origin], of_bent])
     order = np.argsort(of_part, kind="stable")
     return corners[order], of_part[order]

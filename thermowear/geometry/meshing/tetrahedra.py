@@ -1,10 +1,11 @@
-"""Curved tetrahedra by gmsh, refined around a round contact."""
+"""Curved tetrahedra by gmsh, refined around a contact."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -16,17 +17,37 @@ from .divisions import check_count
 
 MOST_TETRAHEDRA = 1_000_000
 """Largest number of tetrahedra of a body."""
-_GROWTH = 0.35
+GROWTH = 0.35
 """Increase of the element size per distance from the contact."""
 _PER_CUBE = 8.0
 """Number of tetrahedra in a cube of their size."""
-_PER_TURN = 24
-"""Number of elements round a circle far from the contact."""
 _TETRAHEDRON = {1: 4, 2: 11}
 """Element types of gmsh by order."""
 
 Draw = Callable[..., dict[str, list[int]]]
 """Draw bodies with gmsh's OpenCASCADE kernel: ``draw(occ)`` returns their volumes by name."""
+
+
+class SizeZone(Protocol):
+    """Element sizes of a body around a contact."""
+
+    @property
+    def edge(self) -> float:
+        """Element size at the edge of the contact [m]."""
+
+    @property
+    def largest(self) -> float:
+        """Largest element size [m]."""
+
+    @property
+    def per_turn(self) -> int:
+        """Least number of elements round a circle."""
+
+    def expressions(self, unit: float) -> tuple[str, ...]:
+        """Sizes due to the contact and to its edge, as gmsh's ``MathEval``, in a length unit."""
+
+    def cells(self) -> float:
+        """Estimate of the number of tetrahedra of the body."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +75,7 @@ class RoundZone:
     edge: float
     largest: float
     volume: float
+    per_turn = 24
 
     def expressions(self, unit: float) -> tuple[str, str]:
         """Sizes due to the contact and to its edge, as gmsh's ``MathEval``, in a length unit."""
@@ -64,13 +86,13 @@ class RoundZone:
         outside = f"(0.5*({beside}+Fabs({beside})))"
         from_zone = f"Sqrt({outside}*{outside}+z*z)"
         from_edge = f"Sqrt({beside}*{beside}+z*z)"
-        return f"{inside}+{_GROWTH}*{from_zone}", f"{edge}+{_GROWTH}*{from_edge}"
+        return f"{inside}+{GROWTH}*{from_zone}", f"{edge}+{GROWTH}*{from_edge}"
 
     def cells(self) -> float:
         """Estimate of the number of tetrahedra of the body."""
-        far = np.geomspace(1e-3 * self.edge, max(self.largest / _GROWTH, self.radius), 400)
-        size = np.minimum(self.inside + _GROWTH * far, self.largest)
-        near_edge = np.minimum(self.edge + _GROWTH * far, self.inside)
+        far = np.geomspace(1e-3 * self.edge, max(self.largest / GROWTH, self.radius), 400)
+        size = np.minimum(self.inside + GROWTH * far, self.largest)
+        near_edge = np.minimum(self.edge + GROWTH * far, self.inside)
         within = math.pi * self.radius**2 / self.inside**2
         shells = np.trapezoid(2 * math.pi * (self.radius + far) ** 2 / size**3, far)
         tori = np.trapezoid(2 * math.pi**2 * self.radius * far / near_edge**3, far)
@@ -78,8 +100,70 @@ class RoundZone:
         return _PER_CUBE * (within + shells + max(tori, 0.0) + self.volume / self.largest**3)
 
 
+@dataclass(frozen=True)
+class SectorZone:
+    """Element sizes around a contact in a sector of an annulus in the plane z = 0.
+
+    Attributes
+    ----------
+    radii : tuple of float
+        Inner and outer radius, about the z-axis [m].
+    half_angle : float
+        Half of its angle, symmetric about the x-axis [rad].
+    sizes : tuple of float
+        Element sizes inside, at the edge, and far away [m].
+    depth : float
+        Thickness of the body at the contact [m].
+    """
+
+    radii: tuple[float, float]
+    half_angle: float
+    sizes: tuple[float, float, float]
+    depth: float
+    per_turn = 12
+
+    @property
+    def edge(self) -> float:
+        return self.sizes[1]
+
+    @property
+    def largest(self) -> float:
+        return self.sizes[2]
+
+    def expressions(self, unit: float) -> tuple[str, str]:
+        """Sizes due to the contact and to its edge, as gmsh's ``MathEval``, in a length unit."""
+        inner, outer = self.radii
+        middle, half, inside, edge = (
+            f"({value / unit!r})"
+            for value in ((inner + outer) / 2, (outer - inner) / 2, *self.sizes[:2])
+        )
+        r = "Sqrt(x*x+y*y)"
+        across = f"(Fabs({r}-{middle})-{half})"
+        along = f"({r}*(Acos(x/({r}+1e-12))-{self.half_angle!r}))"
+        outside = [f"(0.5*({beside}+Fabs({beside})))" for beside in (across, along)]
+        away = f"({outside[0]}*{outside[0]}+{outside[1]}*{outside[1]})"
+        nearest = f"(0.5*({across}+{along}+Fabs({across}-{along})))"  # the larger one
+        within = f"(0.5*({nearest}-Fabs({nearest})))"
+        from_zone = f"Sqrt({away}+z*z)"
+        from_edge = f"Sqrt({away}+{within}*{within}+z*z)"
+        return f"{inside}+{GROWTH}*{from_zone}", f"{edge}+{GROWTH}*{from_edge}"
+
+    def cells(self) -> float:
+        """Estimate of the number of tetrahedra of the body."""
+        inside, edge, largest = self.sizes
+        inner, outer = self.radii
+        area = self.half_angle * (outer**2 - inner**2)
+        around = 2 * (outer - inner) + 2 * self.half_angle * (outer + inner)
+        away = np.geomspace(1e-3 * edge, max(self.depth, edge), 400)
+        below = np.trapezoid(1 / np.minimum(inside + GROWTH * away, largest) ** 3, away)
+        near = np.minimum(edge + GROWTH * away, inside) ** -3 - inside**-3
+        edges = np.trapezoid(math.pi / 2 * away * near, away)
+        surface = 1 / inside**2 + below
+        return _PER_CUBE * (area * surface + around * max(edges, 0.0))
+
+
 def mesh_solids(
-    draw: Draw, zones: dict[str, RoundZone], order: int, unit: float
+    draw: Draw, zones: Mapping[str, SizeZone], order: int, unit: float
 ) -> dict[str, MeshedBody]:
     """Mesh solids that may touch each other by gmsh.
 
@@ -89,7 +173,7 @@ def mesh_solids(
     ----------
     draw : callable
         Draws the solids, all lengths divided by `unit`.
-    zones : dict of str to RoundZone
+    zones : dict of str to RoundZone or SectorZone
         Sizes by body, equal at the contact.
     order : int
         Order of the cells, 1 or 2.
@@ -117,7 +201,7 @@ def mesh_solids(
         return {name: _read(gmsh.model, volumes[name], order, unit) for name in zones}
 
 
-def _set_sizes(gmsh, zones: dict[str, RoundZone], volumes: dict[str, list[int]], unit: float):
+def _set_sizes(gmsh, zones: Mapping[str, SizeZone], volumes: dict[str, list[int]], unit: float):
     """Set the size field of bodies: refined at the contact, limited in each of them."""
     fields, parts = gmsh.model.mesh.field, []
     zone = next(iter(zones.values()))
@@ -136,7 +220,7 @@ def _set_sizes(gmsh, zones: dict[str, RoundZone], volumes: dict[str, list[int]],
         "MeshSizeMax": max(own.largest for own in zones.values()) / unit,
         "MeshSizeFromPoints": 0,
         "MeshSizeExtendFromBoundary": 0,
-        "MeshSizeFromCurvature": _PER_TURN,
+        "MeshSizeFromCurvature": zone.per_turn,
         "Algorithm": 6,
         "Algorithm3D": 1,
         "Optimize": 1,

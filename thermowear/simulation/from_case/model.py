@@ -29,15 +29,13 @@ from ...laws.power_wear import PowerWear
 from ...model.body import Body, Material
 from ...model.conditions import Heat, Holder, Motion
 from ...model.interface import (
-    CircularTrack,
     ContactMethod,
-    EvenTrack,
     FaceWear,
     HardnessConductance,
     Interface,
-    PinTrack,
 )
 from ...model.model import Discretisation, Model, Zone
+from ...model.tracks import CircularTrack, EvenTrack, PinTrack, TabulatedTrack, Track
 
 
 def model_of(case: Case) -> Model:
@@ -232,12 +230,14 @@ def _face_wear(case: Case, wear: BodyWearTable) -> FaceWear:
     return FaceWear(law, factors, b, track, wear.per)
 
 
-def _track(case: Case, wear: BodyWearTable) -> Distribution | EvenTrack | CircularTrack | PinTrack:
+def _track(case: Case, wear: BodyWearTable) -> Distribution | Track:
     geometry = case.geometry
     if wear.spread == "in-place":
         return InPlace()
     if geometry.footprint is not None and geometry.rotation_center is not None:
         return PinTrack(geometry.rotation_center, *geometry.footprint)
+    if geometry.duty_by_radius is not None and geometry.rotation_center is not None:
+        return TabulatedTrack(geometry.rotation_center, *geometry.duty_by_radius)
     if geometry.duty is not None and geometry.rotation_center is not None:
         return CircularTrack(geometry.rotation_center, geometry.duty)
     return Distribution(geometry.sector) if geometry.track is None else EvenTrack(geometry.track)

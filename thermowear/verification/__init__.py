@@ -38,6 +38,6 @@ CASES = {
 """Verification cases by id in the order of ``verify``; each yields its checks."""
 
 SLOW = frozenset({"deep-wear", "ring-3d-whole"})
-"""Cases that take a minute or more."""
+"""Cases that take more than two minutes."""
 
 __all__ = ["CASES", "SLOW", "Check", "all_checks", "compare"]

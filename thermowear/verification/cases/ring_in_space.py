@@ -65,22 +65,24 @@ _SLENDER = 3.0
 
 def ring_3d() -> Iterator[Check]:
     """A quarter: hot steady state, running-in without heat (8T) and with it."""
-    with tempfile.TemporaryDirectory() as place:
-        path = write_ring(Path(place) / "quarter.msh", FACE_ENDS, sectors=3)
-        run = partial(in_space, path, quarter=True)
-        yield from _steady(run(STEADY), 0.25)
-        yield from _running_in(run(RUNNING_IN), run_starter(RUNNING_IN), 0.25, "")
-        flat = computed(load(tomllib.loads(starter_text(STEADY)) | HOT))
-        yield from _running_in(run(STEADY, HOT), flat, 0.25, ", hot")
+    yield from _compared(0.25)
 
 
 def ring_3d_whole() -> Iterator[Check]:
-    """The whole ring, twisted by friction: hot steady state, and running-in without heat (8T)."""
+    """The whole ring, twisted by friction: the same states as of a quarter."""
+    yield from _compared(1.0)
+
+
+def _compared(share: float) -> Iterator[Check]:
+    """Part of a ring, compared with axisymmetric runs."""
+    quarter = share < 1.0
     with tempfile.TemporaryDirectory() as place:
-        path = write_ring(Path(place) / "ring.msh", FACE_ENDS, sectors=12, whole=True)
-        run = partial(in_space, path, quarter=False)
-        yield from _steady(run(STEADY), 1.0)
-        yield from _running_in(run(RUNNING_IN), run_starter(RUNNING_IN), 1.0, "")
+        path = write_ring(Path(place) / "ring.msh", FACE_ENDS, 3 if quarter else 12, not quarter)
+        run = partial(in_space, path, quarter=quarter)
+        yield from _steady(run(STEADY), share)
+        yield from _running_in(run(RUNNING_IN), run_starter(RUNNING_IN), share, "")
+        flat = computed(load(tomllib.loads(starter_text(STEADY)) | HOT))
+        yield from _running_in(run(STEADY, HOT), flat, share, ", hot")
 
 
 def in_space(
@@ -222,7 +224,7 @@ def _running_in(found: Result, flat: Result, share: float, note: str) -> Iterato
             values = getattr(i, name)[chosen], _along(exact, name, i)[chosen]
             yield _worst(quantity, *values, 1e-2, AXISYMMETRIC)
         if np.isfinite(i.temperature_1).all():
-            rises = (v - AMBIENT for v in (i.temperature_1, _along(exact, "temperature_1", i)))
+            rises = i.temperature_1 - AMBIENT, _along(exact, "temperature_1", i) - AMBIENT
             quantity = f"temperature rise at {time:g} s at the point of largest deviation{end} [K]"
             yield _worst(quantity, *rises, 5e-3, AXISYMMETRIC)
         lost = share * (known[time].weight @ known[time].wear_1)

@@ -17,7 +17,8 @@ LONG = SLOW | {
     "fretting-wear", "fuel-fretting", "growing-cylinder", "growing-sphere",
     "half-plane-instability", "hertz-elliptical", "hertz-line", "methods-agree",
     "mindlin", "minimality", "moving-band", "optimal-shape", "patch", "pressure-conductance",
-    "reciprocating", "running-in", "sliding-rod", "step-flux", "temperature-dependent", "two-slabs",
+    "reciprocating", "ring-3d", "running-in", "sliding-rod", "step-flux", "temperature-dependent",
+    "two-slabs",
 }  # fmt: skip
 """Cases of more than three seconds; run by `make verify`."""
 

@@ -18,6 +18,7 @@ from .cases.minimality import minimality
 from .cases.moving_band import moving_band
 from .cases.patch_in_space import patch_3d
 from .cases.reciprocating import reciprocating
+from .cases.ring_in_space import ring_3d, ring_3d_whole
 from .cases.special_cases import SPECIAL_CASES
 from .cases.transient_heat import braking_stop, step_flux
 from .check import Check, all_checks, compare, identified
@@ -29,6 +30,7 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     deep_wear, beam_shakedown, fretting_wear, fretting_cylinder, fuel_fretting,
     reciprocating, moving_band, two_slabs, pressure_conductance, temperature_dependent,
     minimality, step_flux, braking_stop, sliding_rod, half_plane_instability, optimal_shape,
+    ring_3d, ring_3d_whole,
 ), ())  # fmt: skip
 CASES = {
     id: identified(id, case, *runs)
@@ -37,7 +39,7 @@ CASES = {
 }
 """Verification cases by id in the order of ``verify``; each yields its checks."""
 
-SLOW = frozenset({"deep-wear", "hertz-sphere-3d-fine"})
+SLOW = frozenset({"deep-wear", "hertz-sphere-3d-fine", "ring-3d-whole"})
 """Cases of several minutes or much memory."""
 
 __all__ = ["CASES", "SLOW", "Check", "all_checks", "compare"]

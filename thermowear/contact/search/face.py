@@ -31,9 +31,8 @@ from ...lagrange import (
 from .facet_tree import FacetTree
 from .facets import FacetSet, FacetTable, gather_facets
 from .projection import project
+from .slender_facets import SampledFacets, sampled
 
-_BLOCK_SIZE = 1_000_000
-"""Number of pairs of a point and a facet processed at once."""
 ONWARD = (1.0, 0.3)
 """Direction of a chain: along x; upright faces begin at the lower end, also if slightly worn."""
 _BLOCK_SIZE = 1_000_000
@@ -116,6 +115,13 @@ class Surface(FacetSet):
     @cached_property
     def tree(self) -> FacetTree:
         return FacetTree(self.nodes)
+
+    def sampled_nearby(self, points):
+        return None if self._samples is None else self._samples.near(points)
+
+    @cached_property
+    def _samples(self) -> SampledFacets | None:
+        return sampled(self)
 
     def position(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """NaN: points of a surface have no order."""

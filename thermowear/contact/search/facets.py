@@ -91,6 +91,12 @@ class FacetSet(ABC):
     def nearby(self, points: np.ndarray) -> np.ndarray:
         """Candidates for the closest facet to points (n, gdim), shape (n, n_candidates)."""
 
+    def sampled_nearby(
+        self, points: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+        """Candidates where `nearby` can miss the closest facet, see `SampledFacets`; else None."""
+        return None
+
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of facets, shape (n, gdim) [m]."""
         return (self.shape_functions(t)[0][:, None] @ self.nodes[facet])[:, 0]

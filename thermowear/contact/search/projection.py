@@ -96,6 +96,14 @@ def overhang(face: FacetSet, facet: np.ndarray, t: np.ndarray, offset: np.ndarra
 
 def _closest(face: FacetSet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Facets and parameters (n, dim) of the closest points, the best of some candidates."""
+    sampled = face.sampled_nearby(points)
+    if sampled is not None:
+        point, facet, start = sampled
+        t = _inside(face, points[point], facet, start)
+        distance = np.linalg.norm(face.points(facet, t) - points[point], axis=1)
+        order = np.lexsort((distance, point))
+        chosen = order[np.unique(point[order], return_index=True)[1]]
+        return facet[chosen], t[chosen]
     facets = face.nearby(points)
     starts = face.inside(face.flattened.parameters(facets, points[:, None]))
     places = np.stack(

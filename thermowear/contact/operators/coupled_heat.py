@@ -23,10 +23,9 @@ from .heat import (
     NO_HEAT_SINK,
     BaselineResponse,
     FaceHeat,
-    HeatExchange,
-    InterfaceHeat,
     ThermalState,
 )
+from .heat_exchange import HeatExchange, InterfaceHeat
 
 _TOLERANCE = 1e-9
 """Reduction of the temperature jump in perfect contact."""

@@ -10,92 +10,28 @@ from typing import Any
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
-from ...contact.operators.condensation import condense_distortion, condense_heat
+from ...contact.operators.condensation import condense_heat
 from ...contact.operators.coupled_heat import AnyExchange, AnyFace
 from ...contact.operators.heat import (
     BaselineResponse,
-    HeatExchange,
-    InterfaceHeat,
-    ThermalDistortion,
     ThermalState,
     baseline_response,
 )
+from ...contact.operators.heat_exchange import (
+    HeatExchange,
+    InterfaceHeat,
+)
 from ...contact.operators.pressure import scaled
-from ...parallel import sum_over_ranks
-from ...serialise import serialisable
+from ...contact.operators.thermal_opening import (
+    CoupledDistortion,
+    ThermalDistortion,
+    condense_distortion,
+)
 from ..system.conditions import InterfaceConditions
 from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..system.thermal_system import ThermalLoad, ThermalSystem
-
-_ROUNDING = 1e-3
-"""Least scale of the heat balance, relative to the initial heat content (rounding)."""
-
-
-@dataclass(frozen=True)
-class HeatBalance:
-    """Heat balance since the start.
-
-    Attributes
-    ----------
-    made, stored, lost : float
-        Heat by friction and surfaces with given flux or power, in the bodies, and lost [J].
-    moved : float
-        Magnitude of all heat put in, lost, or moved inside the bodies [J].
-    """
-
-    made: float
-    stored: float
-    lost: float
-    moved: float
-
-    @property
-    def error(self) -> float:
-        """Imbalance relative to the largest term."""
-        scale = max(abs(self.made), abs(self.stored), abs(self.lost), self.moved)
-        return abs(self.made - self.stored - self.lost) / (scale or 1.0)
-
-
-@serialisable
-@dataclass(frozen=True)
-class StoredHeat:
-    """Heat stored in the bodies in transient conduction.
-
-    Attributes
-    ----------
-    rise : ndarray, shape (n_owned,)
-        Nodal temperature rise over the ambient [K].
-    content : ndarray, shape (n_owned,)
-        Nodal heat content over the ambient [J].
-    turnover : ndarray, shape (3,)
-        Cumulated heat input by friction and through surfaces, heat lost, and sum of the magnitudes
-        of all heat in and out [J].
-    largest : float
-        Largest magnitude so far of the rise of the faces; also inside the bodies where friction is
-        not the only heat source [K].
-    """
-
-    rise: np.ndarray
-    content: np.ndarray
-    turnover: np.ndarray
-    largest: float
-
-    def towards(self, other: StoredHeat, part: float) -> StoredHeat:
-        """Interpolate linearly (or extrapolate) to another state by a fraction of the distance."""
-        return StoredHeat(
-            self.rise + part * (other.rise - self.rise),
-            self.content + part * (other.content - self.content),
-            self.turnover + part * (other.turnover - self.turnover),
-            other.largest,
-        )
-
-    def balance(self, initial: StoredHeat, comm) -> HeatBalance:
-        """Heat balance since an initial state on the same mesh; every rank calls."""
-        gained, before = self.content - initial.content, np.abs(initial.content).sum()
-        sums = np.array([gained.sum(), np.abs(gained).sum(), before])
-        gain, shifted, had = (float(heat) for heat in sum_over_ranks(comm, sums))
-        made, lost, exchanged = (float(heat) for heat in self.turnover)
-        return HeatBalance(made, gain, lost, max(exchanged, shifted, _ROUNDING * had))
+from .stored_heat import StoredHeat
 
 
 class HeatOperators:
@@ -110,25 +46,28 @@ class HeatOperators:
         method, condensed = system.model.interface.method.name, isinstance(face, InterfaceHeat)
         self.distorts = method == "condensed" and condensed
         self._exchange: tuple[bytes, AnyExchange] | None = None
-        self._compliance: tuple[HeatExchange, bytes, np.ndarray] | None = None
+        self._coupled: CoupledDistortion | None = None
+        self._compliance: tuple[CoupledDistortion, bytes, np.ndarray] | None = None
 
     @cached_property
-    def per_rise(self) -> np.ndarray:
-        """Weak gap per nodal rise, shape (n_owned, m) [m³/K]."""
-        return self._system.influence.per_rise[0]
+    def slopes(self) -> list[np.ndarray]:
+        """Excess rises of temperature-dependent expansions per rise, shape (n_owned,) each."""
+        return []
 
     @cached_property
     def distortion(self) -> ThermalDistortion:
         """Weak gap per heat at the faces. Every rank calls."""
-        system, conduction = self._system, self.conduction
+        system, conduction, face = self._system, self.conduction, self.face
+        assert isinstance(face, InterfaceHeat)
         # those of time steps and tangents are not shared with other systems
         steady = system.thermal is not None and conduction is system.thermal.conduction
         parts = system.parts if steady else SetupCache()
+        opening = system.thermal_opening  # the distortion may have been condensed with it
         with system.phases("condense distortion"):
             return parts.get(
                 "distortion",
                 system.inputs.conduction,
-                lambda: condense_distortion(conduction, self.per_rise, self.face),
+                lambda: condense_distortion(conduction, opening, face.nodes, self.slopes),
             )
 
     def rise(self, load: ThermalLoad, heat: np.ndarray) -> np.ndarray:
@@ -137,8 +76,8 @@ class HeatOperators:
 
     def baseline(self, rise: np.ndarray) -> BaselineResponse:
         """Interface response to a nodal rise (n_owned,); every rank calls."""
-        per_rise = self.per_rise if self.distorts else None
-        return baseline_response(rise, self.face.traces, self._system.comm, per_rise)
+        opening = self._system.thermal_opening.of([rise]) if self.distorts else None
+        return baseline_response(rise, self.face.traces, self._system.comm, opening)
 
     def exchange(self, conductance: np.ndarray) -> AnyExchange:
         """Heat exchange of the faces for conductances at the points, shape (n,)."""
@@ -154,12 +93,20 @@ class HeatOperators:
         assert isinstance(exchange, HeatExchange)
         return exchange
 
-    def compliance(self, exchange: HeatExchange, heating: np.ndarray, basis: np.ndarray):
+    def coupled_distortion(self, conductance: np.ndarray) -> CoupledDistortion:
+        """Distortion of faces that exchange heat by conductances at the points, shape (n,)."""
+        exchange = self.condensed_exchange(conductance)
+        if self._coupled is None or self._coupled.exchange is not exchange:
+            self._coupled = None  # frees its memory
+            self._coupled = self.distortion.coupled(exchange)
+        return self._coupled
+
+    def compliance(self, distortion: CoupledDistortion, heating: np.ndarray, basis: np.ndarray):
         """Thermal compliance ``H diag(mu v) Ψ`` for a heating ``mu v`` (n,) [m/s], (m, m)."""
         key, last = heating.tobytes(), self._compliance
-        if last is None or last[0] is not exchange or last[1] != key:
-            per_heat = self.distortion.per_friction_heat(exchange)
-            last = self._compliance = exchange, key, per_heat @ scaled(heating, basis)
+        if last is None or last[0] is not distortion or last[1] != key:
+            opening = distortion.by_friction(scaled(heating, basis))
+            last = self._compliance = distortion, key, opening
         return last[2]
 
 
@@ -181,7 +128,7 @@ class HeatStep:
     load: ThermalLoad
     supplied: np.ndarray
     baseline: BaselineResponse
-    _gap: tuple[HeatExchange, np.ndarray] | None = None
+    _gap: tuple[CoupledDistortion, np.ndarray] | None = None
 
     def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
@@ -198,10 +145,10 @@ class HeatStep:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Weak gap per pressure coefficient by friction heat (m, m), by other heat (m,) [m³]."""
         operators = self.operators
-        exchange = operators.condensed_exchange(conditions.conductance)
-        if self._gap is None or self._gap[0] is not exchange:
-            self._gap = exchange, operators.distortion.baseline_gap(exchange, self.baseline)
-        return operators.compliance(exchange, conditions.heating, basis), self._gap[1]
+        distortion = operators.coupled_distortion(conditions.conductance)
+        if self._gap is None or self._gap[0] is not distortion:
+            self._gap = distortion, distortion.baseline_gap(self.baseline)
+        return operators.compliance(distortion, conditions.heating, basis), self._gap[1]
 
     def converged(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         """Test whether the last coupling has converged at a pressure: linear heat always has."""

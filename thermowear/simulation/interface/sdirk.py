@@ -10,7 +10,7 @@ import numpy as np
 
 from ...contact.operators.heat import ThermalState
 from ...serialise import serialisable
-from ..heat.heat_steps import StoredHeat
+from ..heat.stored_heat import StoredHeat
 from .contact_solver import ContactSolution
 
 _γ = 1 - 1 / np.sqrt(2)

@@ -165,9 +165,8 @@ def condense_heat(
     comm = conduction.space.mesh.comm
     first, second = (face_nodes(trace, comm) for trace in traces)
     Φ1, Φ2 = nodal_responses(conduction, (first, second))
-    return InterfaceHeat(
-        weights, basis, traces, shift, partition, nodes=(first, second), response=(Φ1, Φ2)
-    )
+    at_nodes = (first, second), (Φ1, Φ2), conduction.symmetric
+    return InterfaceHeat(weights, basis, traces, shift, partition, *at_nodes)
 
 
 def nodal_responses(conduction: Conduction, faces: Sequence[FaceNodes]) -> list[np.ndarray]:

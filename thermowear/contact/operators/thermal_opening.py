@@ -18,6 +18,7 @@ from ...bulk.direct_solver import multiply
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
+from .exchange_update import ChangedExchange
 from .face_nodes import FaceNodes
 from .heat import BaselineResponse
 from .heat_exchange import HeatExchange
@@ -156,8 +157,13 @@ class ThermalDistortion:
 
     per_heat: tuple[np.ndarray, np.ndarray]
 
-    def coupled(self, exchange: HeatExchange) -> CoupledDistortion:
-        """Distortion of faces that exchange heat."""
+    def coupled(
+        self, exchange: HeatExchange, reference: CoupledDistortion | None = None
+    ) -> CoupledDistortion:
+        """Distortion of faces that exchange heat, given that of the reference of a change."""
+        if isinstance(exchange, ChangedExchange) and reference is not None:
+            factors = exchange.correction(reference.per_load)
+            return CoupledDistortion(exchange, reference.per_load, factors)
         return CoupledDistortion(exchange, exchange.opened(self.per_heat))
 
 
@@ -169,21 +175,31 @@ class CoupledDistortion:
     ----------
     exchange : HeatExchange
     per_load : ndarray, shape (m, n_f1 + n_f2 + n_z)
-        Weak gap per load of the exchange.
+        Weak gap per load of the exchange, or of its reference.
+    change : tuple of ndarray or None, shape (m, k) and (k, n_f1 + n_f2 + n_z)
+        Factors of the difference from the reference.
     """
 
     exchange: HeatExchange
     per_load: np.ndarray
+    change: tuple[np.ndarray, np.ndarray] | None = None
 
     def by_friction(self, friction_heat) -> np.ndarray:
         """Weak gap by friction heat (n,) or columns of it, also sparse, shape (m, k) [m³]."""
-        return self.per_load @ self.exchange.loads(friction_heat)
+        return self._weak(self.exchange.loads(friction_heat))
 
     def baseline_gap(self, baseline: BaselineResponse) -> np.ndarray:
         """Weak gap without friction heat, shape (m,)."""
         assert baseline.opening is not None
         still = np.zeros(len(baseline.rise[0]))
-        return self.per_load @ self.exchange.loads(still, baseline) + baseline.opening
+        return self._weak(self.exchange.loads(still, baseline)) + baseline.opening
+
+    def _weak(self, loads) -> np.ndarray:
+        result = self.per_load @ loads
+        if self.change is None:
+            return result
+        first, second = self.change
+        return result + first @ (second @ loads)
 
 
 class DistortionRows:

@@ -31,6 +31,7 @@ from ..system.conditions import InterfaceConditions
 from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..system.thermal_system import ThermalLoad, ThermalSystem
+from .exchange_cache import ExchangeCache
 from .stored_heat import StoredHeat
 
 
@@ -45,9 +46,7 @@ class HeatOperators:
         self.conduction, self.face, self._system = conduction, face, system
         method, condensed = system.model.interface.method.name, isinstance(face, InterfaceHeat)
         self.distorts = method == "condensed" and condensed
-        self._exchange: tuple[bytes, AnyExchange] | None = None
-        self._coupled: CoupledDistortion | None = None
-        self._compliance: tuple[CoupledDistortion, bytes, np.ndarray] | None = None
+        self._exchanges = ExchangeCache(face)
 
     @cached_property
     def slopes(self) -> list[np.ndarray]:
@@ -81,11 +80,7 @@ class HeatOperators:
 
     def exchange(self, conductance: np.ndarray) -> AnyExchange:
         """Heat exchange of the faces for conductances at the points, shape (n,)."""
-        key = conductance.tobytes()
-        if self._exchange is None or self._exchange[0] != key:
-            self._exchange = None  # frees its memory
-            self._exchange = key, self.face.exchange(conductance)
-        return self._exchange[1]
+        return self._exchanges.of(conductance).exchange
 
     def condensed_exchange(self, conductance: np.ndarray) -> HeatExchange:
         """Heat exchange of condensed bodies, which contact solvers need."""
@@ -95,19 +90,15 @@ class HeatOperators:
 
     def coupled_distortion(self, conductance: np.ndarray) -> CoupledDistortion:
         """Distortion of faces that exchange heat by conductances at the points, shape (n,)."""
-        exchange = self.condensed_exchange(conductance)
-        if self._coupled is None or self._coupled.exchange is not exchange:
-            self._coupled = None  # frees its memory
-            self._coupled = self.distortion.coupled(exchange)
-        return self._coupled
+        return self._exchanges.distortion(self._exchanges.of(conductance), self.distortion)
 
-    def compliance(self, distortion: CoupledDistortion, heating: np.ndarray, basis: np.ndarray):
+    def compliance(self, conductance: np.ndarray, heating: np.ndarray, basis: np.ndarray):
         """Thermal compliance ``H diag(mu v) Ψ`` for a heating ``mu v`` (n,) [m/s], (m, m)."""
-        key, last = heating.tobytes(), self._compliance
-        if last is None or last[0] is not distortion or last[1] != key:
-            opening = distortion.by_friction(scaled(heating, basis))
-            last = self._compliance = distortion, key, opening
-        return last[2]
+        key, known = heating.tobytes(), self._exchanges.of(conductance)
+        if known.compliance is None or known.compliance[0] != key:
+            distortion = self.coupled_distortion(conductance)
+            known.compliance = key, distortion.by_friction(scaled(heating, basis))
+        return known.compliance[1]
 
 
 @dataclass(eq=False)
@@ -148,7 +139,7 @@ class HeatStep:
         distortion = operators.coupled_distortion(conditions.conductance)
         if self._gap is None or self._gap[0] is not distortion:
             self._gap = distortion, distortion.baseline_gap(self.baseline)
-        return operators.compliance(distortion, conditions.heating, basis), self._gap[1]
+        return operators.compliance(conditions.conductance, conditions.heating, basis), self._gap[1]
 
     def converged(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         """Test whether the last coupling has converged at a pressure: linear heat always has."""

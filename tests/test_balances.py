@@ -66,7 +66,7 @@ def test_a_sweep_marks_the_variant_and_goes_on(tmp_path, capsys):
 
 def test_a_step_that_is_not_balanced_is_not_taken(monkeypatch):
     """requirement: a running-in ends at the last step whose heat balances."""
-    from thermowear.simulation.heat.stored_heat import StoredHeat
+    from thermowear.simulation.heat.heat_steps import StoredHeat
 
     balance = StoredHeat.balance
 

@@ -16,7 +16,8 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import lu_factor, lu_solve
 
-from .heat_exchange import HeatExchange, coupling_matrix, scaled_functions
+from .exchange_matrix import coupling_matrix, scaled_functions
+from .heat_exchange import HeatExchange
 
 _CHANGED = 0.2
 """Largest part of the unknowns that may change; beyond it a factorisation is as fast."""
@@ -57,7 +58,7 @@ class ReferenceExchange(HeatExchange):
         division, before = self.face.divided(conductance), self.division
         other = [one != two for one, two in zip(division, before, strict=True)]
         points = np.flatnonzero(np.any(other, axis=0))
-        beyond = sp.csr_array(self.face.basis)[points[division[1][points] > 0.0]]
+        beyond = self.face.functions[points[division[1][points] > 0.0]]
         if np.any(self.scale[beyond.indices] == 0.0):
             return None  # heat crosses in perfect contact where none did
         found = ChangedExchange(self, conductance, points)
@@ -97,19 +98,24 @@ class ChangedExchange(HeatExchange):
         super().__init__(reference.face, conductance)
 
     def _set_up(self) -> None:
-        face, reference, self.scale = self.face, self.reference, self.reference.scale
+        face, reference, points = self.face, self.reference, self._points
+        self.scale = reference.scale
         pairs = zip(self.division, reference.division, strict=True)
-        changes = [one - two for one, two in pairs]
-        difference = coupling_matrix(face, tuple(changes), self.scale, 0.0, self._points)
-        idle = np.concatenate([np.zeros(self._splits[-1]), self._idle()])
+        direct, passing_fraction, resistance = (one[points] - two[points] for one, two in pairs)
+        functions = scaled_functions(face.functions, self.scale)
+        difference = coupling_matrix(
+            face.weights[points],
+            functions[points],
+            (face.values[0][points], face.values[1][points]),
+            (direct, passing_fraction, resistance),
+            0.0,
+        )
+        # functions that no heat crosses any more are held at zero
+        idle = self.division[1] @ abs(functions) == 0.0
+        idle = np.concatenate([np.zeros(self._splits[-1]), idle])
         self._difference = (difference + sp.diags_array(idle)).tocsr()
         rows, columns = self._difference.nonzero()
         self.near = np.union1d(rows, columns)
-
-    def _idle(self) -> np.ndarray:
-        """One for functions that no heat crosses any more, which is held at zero, (n_z,)."""
-        crossing = self.division[1] @ abs(scaled_functions(self.face, self.scale))
-        return (crossing == 0.0).astype(float)
 
     @cached_property
     def coupling(self) -> sp.csr_array:

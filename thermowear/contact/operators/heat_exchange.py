@@ -8,20 +8,65 @@ both faces by a sparse matrix. The points themselves only carry values.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeAlias
 
 import numpy as np
 import scipy.sparse as sp
 from scipy.linalg.lapack import dgetrf, dgetrs
 
 from ...errors import ComputationError
+from ...parallel import sum_over_ranks
+from .exchange_matrix import (
+    Division,
+    coupling_matrix,
+    divided,
+    jump_scale,
+    scaled_functions,
+)
 from .face_nodes import FaceNodes
-from .heat import NO_HEAT_SINK, BaselineResponse, FaceHeat, ThermalState
+from .heat import NO_HEAT_SINK, BaselineResponse, ThermalState
+from .pressure import Basis
 
-Division: TypeAlias = "tuple[np.ndarray, np.ndarray, np.ndarray]"
-"""Parts of a conductance at the points, see `FaceHeat.divided`."""
+
+@dataclass(frozen=True)
+class FaceHeat:
+    """Heat at the contact points, and its exchange between the faces.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (n,)
+        Areas of the points [m²].
+    basis : ndarray or csr_array, shape (n, m)
+        Basis Ψ of the exchanged heat in perfect contact.
+    traces : tuple of csr_matrix, shape (n_owned, n)
+        Transposed trace Eᵀ of each face.
+    shift : float
+        Heat transfer to a bath at ambient included in the factorised conduction on both faces, and
+        subtracted again here [W/(m² K)].
+    partition : float or ndarray, shape (n,)
+        Fraction of the friction heat released on body 1.
+    """
+
+    weights: np.ndarray
+    basis: Basis
+    traces: tuple[sp.csr_matrix, sp.csr_matrix]
+    shift: float
+    partition: float | np.ndarray
+
+    def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
+        """Nodal heat of the contact [W], owned rows; heat of the bath included on request."""
+        shift = self.shift if bath else 0.0
+        first, second = (
+            trace @ (self.weights * (flux + shift * rise))
+            for trace, rise, flux in zip(self.traces, state.rise, state.flux, strict=True)
+        )
+        return first + second
+
+    def divided(self, conductance: np.ndarray) -> Division:
+        """Divide conductances (n,) into parts that are finite and well scaled."""
+        return divided(conductance, self.shift * self.basis.shape[1])
 
 
 @dataclass(frozen=True)
@@ -42,52 +87,39 @@ class InterfaceHeat(FaceHeat):
     symmetric: bool
 
     def exchange(self, conductance: np.ndarray) -> HeatExchange:
-        """Couple the faces by a conductance, see `divided`.
-
-        Parameters
-        ----------
-        conductance : ndarray, shape (n,)
-            Conductance of the contact or the gap at each point [W/(m² K)]; infinite in perfect
-            contact.
-
-        Raises
-        ------
-        ComputationError
-            If a heated body has no heat sink.
-        """
+        """Couple the faces by a conductance (n,), infinite in perfect contact, see `divided`."""
         return HeatExchange(self, conductance)
 
-    def own_response(self) -> np.ndarray:
-        """Rise of each point of both faces per flux at the same point, shape (2, n) [m² K/W]."""
-        return np.array(
-            [
-                self.weights * nodes.values.multiply(nodes.values @ response).sum(axis=1)
-                for nodes, response in zip(self.nodes, self.response, strict=True)
-            ]
-        )
+    @property
+    def values(self) -> tuple[sp.csr_array, sp.csr_array]:
+        """Temperatures of both faces at the points per nodal value, shape (n, n_f)."""
+        return self.nodes[0].values, self.nodes[1].values
+
+    @cached_property
+    def functions(self) -> sp.csr_array:
+        """The basis Ψ as a sparse matrix, shape (n, m)."""
+        return sp.csr_array(self.basis)
 
     @cached_property
     def released(self) -> sp.csr_array:
         """Nodal heat into both faces per friction heat at the points, (n_f1 + n_f2, n) [m²]."""
         f = self.partition * np.ones(len(self.weights))
-        shares = zip(self.nodes, (f, 1 - f), strict=True)
-        parts = [nodes.values.T @ sp.diags_array(self.weights * share) for nodes, share in shares]
+        shares = zip(self.values, (f, 1 - f), strict=True)
+        parts = [values.T @ sp.diags_array(self.weights * share) for values, share in shares]
         return sp.vstack(parts).tocsr()
 
-    def on_nodes(self, heat: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-        """Owned nodal heat of the bodies, shape (n_owned, k), from that on both faces (n_f, k)."""
-        n_owned = self.traces[0].shape[0]
-        first, second = (
-            nodes.spread(values, n_owned) for nodes, values in zip(self.nodes, heat, strict=True)
-        )
-        return first + second
+    def on_nodes(self, heat: np.ndarray) -> np.ndarray:
+        """Owned nodal heat (n_owned, k) of the bodies from that on both faces (n_f1 + …, k)."""
+        n_owned, (one, two) = self.traces[0].shape[0], self.nodes
+        first, second = heat[: one.count], heat[one.count : one.count + two.count]
+        return one.spread(first, n_owned) + two.spread(second, n_owned)
 
 
 class HeatExchange:
     """Faces coupled by a conductance.
 
-    The unknowns are the nodal rises of both faces by the heat at the contact, and the coefficients
-    of the heat that crosses beyond that of the point by point conductance, see `FaceHeat.divided`::
+    The unknowns are the nodal rises of both faces by the heat at the contact, and coefficients of
+    the heat that crosses beyond the direct part, see `exchange_matrix.divided`::
 
         x = (θ1, θ2, z),   Q = b + N x,   θ = Φ Q,   0 = b_z + (N x)_z,   x = G b
 
@@ -110,47 +142,35 @@ class HeatExchange:
 
     def _set_up(self) -> None:
         """Scale the functions of crossing heat, and factorise."""
-        self.scale = jump_scale(self.face, self.division)
-        self.coupling = coupling_matrix(self.face, self.division, self.scale, self.face.shift)
+        face = self.face
+        self.scale = jump_scale(
+            face.weights, face.functions, face.values, face.response, self.division
+        )
+        functions = scaled_functions(face.functions, self.scale)
+        self.coupling = coupling_matrix(
+            face.weights, functions, face.values, self.division, face.shift
+        )
         self._factor = _factorised(self._matrix())
 
     @cached_property
     def _crossing(self) -> sp.csr_array:
         """Scaled functions ``η Ψ`` of the heat that crosses beyond the direct part, (n, n_z)."""
-        basis = scaled_functions(self.face, self.scale)
-        return (sp.diags_array(self.division[1]) @ basis).tocsr()
+        functions = scaled_functions(self.face.functions, self.scale)
+        return (sp.diags_array(self.division[1]) @ functions).tocsr()
 
     def state(self, friction_heat: np.ndarray, baseline: BaselineResponse) -> ThermalState:
         """Temperatures and fluxes due to friction heat [W/m²] at the points, shape (n,)."""
-        changes, crossing = self._solved(friction_heat, baseline)
+        changes, crossing = self.solved(friction_heat, baseline)
         (T1, T2), f = baseline.rise, self.face.partition
         return ThermalState(
             (T1 + changes[0], T2 + changes[1]),
             (f * friction_heat + crossing, (1 - f) * friction_heat - crossing),
         )
 
-    def crossing(self, friction_heat: np.ndarray) -> np.ndarray:
-        """Heat per area from body 2 to body 1 by friction heat, columns of shape (n, k)."""
-        return self._solved(friction_heat, None)[1]
-
-    def nodal_heat(self, friction_heat: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Heat into the nodes of both faces by friction heat (n, k), bath included [W]."""
-        heat = self.loads(friction_heat)
-        first, second, _ = self._parts(heat + self.coupling @ self.response(heat))
-        return first, second
-
     def opened(self, per_heat: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-        """Functionals of the coupled faces per load, from those per nodal heat of each face.
+        """Functionals (weak gaps, say) per load, from those per nodal heat of each face, (k, n_f).
 
-        Parameters
-        ----------
-        per_heat : tuple of ndarray, shape (k, n_f)
-            Functionals (weak gaps, say) per nodal heat into each body.
-
-        Returns
-        -------
-        ndarray, shape (k, n_f1 + n_f2 + n_z)
-            Functionals per load of `loads`.
+        Shape (k, n_f1 + n_f2 + n_z), see `loads`.
         """
         own = np.hstack([*per_heat, np.zeros((len(per_heat[0]), self._crossing.shape[1]))])
         return own + self.transposed_response(self.coupling.T @ own.T).T
@@ -174,14 +194,14 @@ class HeatExchange:
             return loads
         (T1, T2), face = baseline.rise, self.face
         w, s, across = face.weights, face.shift, self.division[0] * (T2 - T1)
-        one, two = (nodes.values.T for nodes in face.nodes)
+        one, two = (values.T for values in face.values)
         heat = one @ (w * (s * T1 + across)), two @ (w * (s * T2 - across))
         return loads + np.concatenate([*heat, self._crossing.T @ (w * (T1 - T2))])
 
-    def _solved(self, friction_heat: np.ndarray, baseline: BaselineResponse | None):
+    def solved(self, friction_heat: np.ndarray, baseline: BaselineResponse | None = None):
         """Changes of the rises of both faces at the points, and heat from body 2 to body 1."""
         θ1, θ2, z = self._parts(self.response(self.loads(friction_heat, baseline)))
-        one, two = (nodes.values for nodes in self.face.nodes)
+        one, two = self.face.values
         changes = one @ θ1, two @ θ2
         difference = changes[1] - changes[0]
         if baseline is not None:
@@ -219,63 +239,58 @@ class HeatExchange:
         return matrix
 
 
-def jump_scale(face: InterfaceHeat, division: Division) -> np.ndarray:
-    """Scale of the functions of heat that crosses beyond the direct part, shape (m,).
-
-    By the temperature jump that they cause; zero where no such heat crosses.
-    """
-    _, passing_fraction, resistance = division
-    crossing = (sp.diags_array(face.weights * passing_fraction) @ sp.csr_array(face.basis)).tocsc()
-    used = np.unique(crossing.nonzero()[1])
-    basis, crossing = sp.csr_array(face.basis).tocsc()[:, used], crossing[:, used]
-    jumps = (basis.T @ sp.diags_array(face.weights * resistance) @ basis).diagonal()
-    for nodes, response in zip(face.nodes, face.response, strict=True):
-        heat = nodes.values.T @ crossing
-        jumps = jumps + heat.multiply(response @ heat).sum(axis=0)
-    result = np.zeros(face.basis.shape[1])
-    result[used] = 1 / np.sqrt(jumps)
-    return result
-
-
-def scaled_functions(face: InterfaceHeat, scale: np.ndarray) -> sp.csr_array:
-    """Functions Ψ with a scale other than zero, times it, shape (n, n_z)."""
-    used = np.flatnonzero(scale)
-    basis = sp.csr_array(face.basis).tocsc()[:, used]
-    return (basis @ sp.diags_array(scale[used])).tocsr()
-
-
-def coupling_matrix(
-    face: InterfaceHeat,
-    division: Division,
-    scale: np.ndarray,
-    shift: float,
-    points: np.ndarray | slice = slice(None),
-) -> sp.csr_array:
-    """Matrix N: heat into the nodes of both faces, and weak temperature jumps.
-
-    The contribution of some contact points; linear in the division of their conductances and in
-    the heat transfer `shift` to the bath [W/(m² K)].
-    """
-    w = face.weights[points]
-    direct, passing_fraction, resistance = (part[points] for part in division)
-    bath, across = sp.diags_array(w * (shift - direct)), sp.diags_array(w * direct)
-    P1, P2 = (nodes.values[points] for nodes in face.nodes)
-    basis = scaled_functions(face, scale)[points]
-    C1, C2 = (P.T @ sp.diags_array(w * passing_fraction) @ basis for P in (P1, P2))
-    resisted = basis.T @ sp.diags_array(w * resistance) @ basis
-    return sp.block_array(
-        [
-            [P1.T @ bath @ P1, P1.T @ across @ P2, C1],
-            [P2.T @ across @ P1, P2.T @ bath @ P2, -C2],
-            [C1.T, -C2.T, resisted],
-        ],
-        format="csr",
-    )
-
-
 def _factorised(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Triangular factors of a matrix (overwritten) with pivots."""
     factor, pivots, singular = dgetrf(matrix, overwrite_a=1)
     if singular:
         raise ComputationError(NO_HEAT_SINK)
     return factor, pivots
+
+
+@dataclass(frozen=True)
+class CoupledDistortion:
+    """Thermal distortion of faces that exchange heat.
+
+    Attributes
+    ----------
+    exchange : HeatExchange
+    per_load : ndarray, shape (m, n_f1 + n_f2 + n_z)
+        Weak gap per load of the exchange, or of its reference.
+    change : tuple of ndarray or None, shape (m, k) and (k, n_f1 + n_f2 + n_z)
+        Factors of the difference from the reference.
+    """
+
+    exchange: HeatExchange
+    per_load: np.ndarray
+    change: tuple[np.ndarray, np.ndarray] | None = None
+
+    def by_friction(self, friction_heat) -> np.ndarray:
+        """Weak gap by friction heat (n,) or columns of it, also sparse, shape (m, k) [m³]."""
+        return self._weak(self.exchange.loads(friction_heat))
+
+    def baseline_gap(self, baseline: BaselineResponse) -> np.ndarray:
+        """Weak gap without friction heat, shape (m,)."""
+        assert baseline.opening is not None
+        still = np.zeros(len(baseline.rise[0]))
+        return self._weak(self.exchange.loads(still, baseline)) + baseline.opening
+
+    def _weak(self, loads) -> np.ndarray:
+        result = self.per_load @ loads
+        if self.change is None:
+            return result
+        first, second = self.change
+        return result + first @ (second @ loads)
+
+
+def baseline_response(
+    rise: np.ndarray, traces: tuple[sp.csr_matrix, sp.csr_matrix], comm, opening=None
+) -> BaselineResponse:
+    """Response of the faces to a nodal rise (n_owned,), with the weak gap opened by it."""
+    T1, T2 = (sum_over_ranks(comm, trace.T @ rise) for trace in traces)
+    return BaselineResponse((T1, T2), opening)
+
+
+def opened_by(per_rise: Sequence[np.ndarray], rises: Sequence[np.ndarray], comm) -> np.ndarray:
+    """Weak gap (m,) opened by nodal rises (n_owned,), each with its gap per rise (n_owned, m)."""
+    pairs = zip(per_rise, rises, strict=False)
+    return sum_over_ranks(comm, sum(response.T @ rise for response, rise in pairs))

@@ -20,8 +20,7 @@ from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
 from .exchange_update import ChangedExchange
 from .face_nodes import FaceNodes
-from .heat import BaselineResponse
-from .heat_exchange import HeatExchange
+from .heat_exchange import CoupledDistortion, HeatExchange, opened_by
 from .traces import transpose_product
 
 _COLUMNS = {2: 32, 3: 128}
@@ -109,8 +108,7 @@ class ThermalOpening:
         """
         comm = self.elastic.space.mesh.comm
         if self.per_rise:
-            pairs = zip(self.per_rise, rises, strict=False)
-            return sum_over_ranks(comm, sum(response.T @ rise for response, rise in pairs))
+            return opened_by(self.per_rise, rises, comm)
         columns = zip(*(rise.reshape(len(rise), -1).T for rise in rises), strict=True)
         found = [self.loads.T @ self.elastic.solve(self._forces(each)) for each in columns]
         weak = np.stack(found, axis=1) if found else np.zeros((self.loads.shape[1], 0))
@@ -165,41 +163,6 @@ class ThermalDistortion:
             factors = exchange.correction(reference.per_load)
             return CoupledDistortion(exchange, reference.per_load, factors)
         return CoupledDistortion(exchange, exchange.opened(self.per_heat))
-
-
-@dataclass(frozen=True)
-class CoupledDistortion:
-    """Thermal distortion of faces that exchange heat.
-
-    Attributes
-    ----------
-    exchange : HeatExchange
-    per_load : ndarray, shape (m, n_f1 + n_f2 + n_z)
-        Weak gap per load of the exchange, or of its reference.
-    change : tuple of ndarray or None, shape (m, k) and (k, n_f1 + n_f2 + n_z)
-        Factors of the difference from the reference.
-    """
-
-    exchange: HeatExchange
-    per_load: np.ndarray
-    change: tuple[np.ndarray, np.ndarray] | None = None
-
-    def by_friction(self, friction_heat) -> np.ndarray:
-        """Weak gap by friction heat (n,) or columns of it, also sparse, shape (m, k) [m³]."""
-        return self._weak(self.exchange.loads(friction_heat))
-
-    def baseline_gap(self, baseline: BaselineResponse) -> np.ndarray:
-        """Weak gap without friction heat, shape (m,)."""
-        assert baseline.opening is not None
-        still = np.zeros(len(baseline.rise[0]))
-        return self._weak(self.exchange.loads(still, baseline)) + baseline.opening
-
-    def _weak(self, loads) -> np.ndarray:
-        result = self.per_load @ loads
-        if self.change is None:
-            return result
-        first, second = self.change
-        return result + first @ (second @ loads)
 
 
 class DistortionRows:

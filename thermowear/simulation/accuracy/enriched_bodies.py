@@ -141,7 +141,9 @@ def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -
 
     Approximation: each point has a resistance of its own in either body, its rise per own flux.
     """
-    own = np.abs(face.own_response())
+    pairs = zip(face.values, face.response, strict=True)
+    diagonals = [values.multiply(values @ response).sum(axis=1) for values, response in pairs]
+    own = np.abs(face.weights * np.array(diagonals))
     with np.errstate(divide="ignore"):
         flux = (rises[1] - rises[0]) / (own.sum(axis=0) + 1 / conductance)
     return rises + own * flux * np.array([[1.0], [-1.0]])

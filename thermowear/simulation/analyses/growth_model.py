@@ -14,7 +14,7 @@ from petsc4py import PETSc
 
 import numpy as np
 
-from ...contact.operators.heat import baseline_response
+from ...contact.operators.heat_exchange import HeatExchange, baseline_response
 from ...laws.stability import LoadFree, PerturbationMatrices, Rate
 from ...parallel import sum_over_ranks
 from ..heat.heat_steps import HeatSteps
@@ -115,9 +115,12 @@ class GrowthModel:
         """
         steps = self._steps
         bodies = steps.operators if rate == 0.0 else steps.operators_within(1 / rate)
-        exchange = bodies.condensed_exchange(self._conditions.conductance)
-        nodal = exchange.face.on_nodes(exchange.nodal_heat(self._friction))
-        self._extend(bodies.conduction.respond(nodal), exchange.crossing(self._friction))
+        exchange = bodies.known(self._conditions.conductance).exchange
+        assert isinstance(exchange, HeatExchange)
+        crossing = exchange.solved(self._friction)[1]
+        loads = exchange.loads(self._friction)
+        heat = loads + exchange.coupling @ exchange.response(loads)  # bath included
+        self._extend(bodies.conduction.respond(exchange.face.on_nodes(heat)), crossing)
         self._rates.append(rate)
 
     def matrices(self) -> PerturbationMatrices:

@@ -7,10 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...bulk.heat.conduction import Conduction
 from ...contact.operators.coupled_heat import AnyExchange, AnyFace
 from ...contact.operators.exchange_update import ReferenceExchange
-from ...contact.operators.heat_exchange import HeatExchange, InterfaceHeat
-from ...contact.operators.thermal_opening import CoupledDistortion, ThermalDistortion
+from ...contact.operators.heat_exchange import CoupledDistortion, HeatExchange, InterfaceHeat
+from ...contact.operators.thermal_opening import ThermalDistortion, condense_distortion
+from ..system.setup_cache import SetupCache
+from ..system.system import System
 
 _FEW = 1500
 """Number of nodes of both faces up to which each exchange is factorised."""
@@ -60,13 +63,12 @@ class ExchangeCache:
 
     def distortion(self, known: KnownExchange, uncoupled: ThermalDistortion) -> CoupledDistortion:
         """Distortion of faces that exchange heat, from that of the uncoupled ones."""
-        if known.distortion is None:
-            assert isinstance(known.exchange, HeatExchange)
-            before, reference = None, self._reference
-            if reference is not None and reference is not known:
-                before = self.distortion(reference, uncoupled)
-            known.distortion = uncoupled.coupled(known.exchange, before)
-        return known.distortion
+        assert isinstance(known.exchange, HeatExchange)
+        before, reference = None, self._reference
+        if reference is not None and reference is not known:
+            before = reference.distortion or self.distortion(reference, uncoupled)
+            reference.distortion = before
+        return uncoupled.coupled(known.exchange, before)
 
     def _changed(self, conductance: np.ndarray) -> KnownExchange | None:
         """Exchange that follows from the reference, if there is one."""
@@ -85,3 +87,29 @@ class ExchangeCache:
             return KnownExchange(face.exchange(conductance))
         self._reference = KnownExchange(ReferenceExchange(face, conductance))
         return self._reference
+
+
+def thermal_distortion(
+    system: System, conduction: Conduction, face: AnyFace, slopes: list[np.ndarray]
+) -> ThermalDistortion:
+    """Weak gap per heat at the uncoupled faces. Every rank calls.
+
+    Parameters
+    ----------
+    system : System
+    conduction : Conduction
+        Steady, or of a time step or a tangent; the latter are not shared with other systems.
+    face : InterfaceHeat
+    slopes : list of ndarray, shape (n_owned,)
+        Excess rises of temperature-dependent expansions per rise.
+    """
+    assert isinstance(face, InterfaceHeat)
+    steady = system.thermal is not None and conduction is system.thermal.conduction
+    parts = system.parts if steady else SetupCache()
+    opening = system.thermal_opening  # the distortion may have been condensed with it
+    with system.phases("condense distortion"):
+        return parts.get(
+            "distortion",
+            system.inputs.conduction,
+            lambda: condense_distortion(conduction, opening, face.nodes, slopes),
+        )

@@ -13,8 +13,7 @@ from ...contact.operators.heat_exchange import InterfaceHeat
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem
-from .heat_steps import HeatStep, HeatSteps
-from .stored_heat import HeatBalance, StoredHeat
+from .heat_steps import HeatBalance, HeatStep, HeatSteps, StoredHeat
 from .varying_heat import VaryingHeatSteps
 
 _FIRST_DEPTH = 1e-3

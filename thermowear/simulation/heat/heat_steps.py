@@ -11,28 +11,91 @@ import numpy as np
 
 from ...bulk.heat.conduction import Conduction
 from ...contact.operators.condensation import condense_heat
-from ...contact.operators.coupled_heat import AnyExchange, AnyFace
-from ...contact.operators.heat import (
-    BaselineResponse,
-    ThermalState,
-    baseline_response,
-)
+from ...contact.operators.coupled_heat import AnyFace
+from ...contact.operators.heat import BaselineResponse, ThermalState
 from ...contact.operators.heat_exchange import (
-    HeatExchange,
+    CoupledDistortion,
     InterfaceHeat,
+    baseline_response,
+    opened_by,
 )
 from ...contact.operators.pressure import scaled
-from ...contact.operators.thermal_opening import (
-    CoupledDistortion,
-    ThermalDistortion,
-    condense_distortion,
-)
+from ...contact.operators.thermal_opening import ThermalOpening
+from ...parallel import sum_over_ranks
+from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions
-from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..system.thermal_system import ThermalLoad, ThermalSystem
-from .exchange_cache import ExchangeCache
-from .stored_heat import StoredHeat
+from .exchange_cache import ExchangeCache, KnownExchange, thermal_distortion
+
+_ROUNDING = 1e-3
+"""Least scale of the heat balance, relative to the initial heat content (rounding)."""
+
+
+@dataclass(frozen=True)
+class HeatBalance:
+    """Heat balance since the start.
+
+    Attributes
+    ----------
+    made, stored, lost : float
+        Heat by friction and surfaces with given flux or power, in the bodies, and lost [J].
+    moved : float
+        Magnitude of all heat put in, lost, or moved inside the bodies [J].
+    """
+
+    made: float
+    stored: float
+    lost: float
+    moved: float
+
+    @property
+    def error(self) -> float:
+        """Imbalance relative to the largest term."""
+        scale = max(abs(self.made), abs(self.stored), abs(self.lost), self.moved)
+        return abs(self.made - self.stored - self.lost) / (scale or 1.0)
+
+
+@serialisable
+@dataclass(frozen=True)
+class StoredHeat:
+    """Heat stored in the bodies in transient conduction.
+
+    Attributes
+    ----------
+    rise : ndarray, shape (n_owned,)
+        Nodal temperature rise over the ambient [K].
+    content : ndarray, shape (n_owned,)
+        Nodal heat content over the ambient [J].
+    turnover : ndarray, shape (3,)
+        Cumulated heat input by friction and through surfaces, heat lost, and sum of the magnitudes
+        of all heat in and out [J].
+    largest : float
+        Largest magnitude so far of the rise of the faces; also inside the bodies where friction is
+        not the only heat source [K].
+    """
+
+    rise: np.ndarray
+    content: np.ndarray
+    turnover: np.ndarray
+    largest: float
+
+    def towards(self, other: StoredHeat, part: float) -> StoredHeat:
+        """Interpolate linearly (or extrapolate) to another state by a fraction of the distance."""
+        return StoredHeat(
+            self.rise + part * (other.rise - self.rise),
+            self.content + part * (other.content - self.content),
+            self.turnover + part * (other.turnover - self.turnover),
+            other.largest,
+        )
+
+    def balance(self, initial: StoredHeat, comm) -> HeatBalance:
+        """Heat balance since an initial state on the same mesh; every rank calls."""
+        gained, before = self.content - initial.content, np.abs(initial.content).sum()
+        sums = np.array([gained.sum(), np.abs(gained).sum(), before])
+        gain, shifted, had = (float(heat) for heat in sum_over_ranks(comm, sums))
+        made, lost, exchanged = (float(heat) for heat in self.turnover)
+        return HeatBalance(made, gain, lost, max(exchanged, shifted, _ROUNDING * had))
 
 
 class HeatOperators:
@@ -47,27 +110,12 @@ class HeatOperators:
         method, condensed = system.model.interface.method.name, isinstance(face, InterfaceHeat)
         self.distorts = method == "condensed" and condensed
         self._exchanges = ExchangeCache(face)
+        self._last: tuple[bytes, KnownExchange] | None = None
 
     @cached_property
     def slopes(self) -> list[np.ndarray]:
         """Excess rises of temperature-dependent expansions per rise, shape (n_owned,) each."""
         return []
-
-    @cached_property
-    def distortion(self) -> ThermalDistortion:
-        """Weak gap per heat at the faces. Every rank calls."""
-        system, conduction, face = self._system, self.conduction, self.face
-        assert isinstance(face, InterfaceHeat)
-        # those of time steps and tangents are not shared with other systems
-        steady = system.thermal is not None and conduction is system.thermal.conduction
-        parts = system.parts if steady else SetupCache()
-        opening = system.thermal_opening  # the distortion may have been condensed with it
-        with system.phases("condense distortion"):
-            return parts.get(
-                "distortion",
-                system.inputs.conduction,
-                lambda: condense_distortion(conduction, opening, face.nodes, self.slopes),
-            )
 
     def rise(self, load: ThermalLoad, heat: np.ndarray) -> np.ndarray:
         """Nodal rise (n_owned,) by nodal heat and prescribed temperatures; every rank calls [K]."""
@@ -75,26 +123,39 @@ class HeatOperators:
 
     def baseline(self, rise: np.ndarray) -> BaselineResponse:
         """Interface response to a nodal rise (n_owned,); every rank calls."""
-        opening = self._system.thermal_opening.of([rise]) if self.distorts else None
+        opening = self.opened([rise]) if self.distorts else None
         return baseline_response(rise, self.face.traces, self._system.comm, opening)
 
-    def exchange(self, conductance: np.ndarray) -> AnyExchange:
-        """Heat exchange of the faces for conductances at the points, shape (n,)."""
-        return self._exchanges.of(conductance).exchange
+    def opened(self, rises: list[np.ndarray]) -> np.ndarray:
+        """Weak gap opened by nodal rises, see `ThermalOpening.of`; every rank calls."""
+        opening = self._opening
+        if opening.per_rise:
+            return opened_by(opening.per_rise, rises, self._system.comm)
+        return opening.of(rises)
 
-    def condensed_exchange(self, conductance: np.ndarray) -> HeatExchange:
-        """Heat exchange of condensed bodies, which contact solvers need."""
-        exchange = self.exchange(conductance)
-        assert isinstance(exchange, HeatExchange)
-        return exchange
+    @cached_property
+    def _opening(self) -> ThermalOpening:
+        return self._system.thermal_opening
+
+    def known(self, conductance: np.ndarray) -> KnownExchange:
+        """Heat exchange of the faces for conductances at the points (n,), and its distortion."""
+        key = conductance.tobytes()
+        if self._last is None or self._last[0] != key:
+            self._last = None  # frees its memory
+            self._last = key, self._exchanges.of(conductance)
+        return self._last[1]
 
     def coupled_distortion(self, conductance: np.ndarray) -> CoupledDistortion:
         """Distortion of faces that exchange heat by conductances at the points, shape (n,)."""
-        return self._exchanges.distortion(self._exchanges.of(conductance), self.distortion)
+        known = self.known(conductance)
+        if known.distortion is None:
+            uncoupled = thermal_distortion(self._system, self.conduction, self.face, self.slopes)
+            known.distortion = self._exchanges.distortion(known, uncoupled)
+        return known.distortion
 
     def compliance(self, conductance: np.ndarray, heating: np.ndarray, basis: np.ndarray):
         """Thermal compliance ``H diag(mu v) Ψ`` for a heating ``mu v`` (n,) [m/s], (m, m)."""
-        key, known = heating.tobytes(), self._exchanges.of(conductance)
+        key, known = heating.tobytes(), self.known(conductance)
         if known.compliance is None or known.compliance[0] != key:
             distortion = self.coupled_distortion(conductance)
             known.compliance = key, distortion.by_friction(scaled(heating, basis))
@@ -123,7 +184,7 @@ class HeatStep:
 
     def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
-        exchange = self.operators.exchange(conditions.conductance)
+        exchange = self.operators.known(conditions.conductance).exchange
         return exchange.state(conditions.heating * pressure, self.baseline)
 
     def rise(self, faces: ThermalState) -> np.ndarray:

@@ -14,11 +14,8 @@ import numpy as np
 
 from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.varying import VaryingExpansion
-from ...contact.operators.heat import (
-    BaselineResponse,
-    ThermalState,
-    baseline_response,
-)
+from ...contact.operators.heat import BaselineResponse, ThermalState
+from ...contact.operators.heat_exchange import baseline_response
 from ...errors import ComputationError
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
@@ -61,7 +58,7 @@ class TangentOperators(HeatOperators):
         excesses = [expansion.excess(about) for expansion in self._expansions]
         for excess, slope in zip(excesses, self.slopes, strict=False):
             excess += slope * (rise - about)
-        opening = self._system.thermal_opening.of([rise, *excesses])
+        opening = self.opened([rise, *excesses])
         return baseline_response(rise, self.face.traces, self._system.comm, opening)
 
 

@@ -14,13 +14,14 @@ from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.condensation import (
     bath_matrix,
-    condense_distortion,
     condense_heat,
     influence,
+    pressure_loads,
 )
-from thermowear.contact.operators.heat import baseline_response
+from thermowear.contact.operators.heat_exchange import baseline_response
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
+from thermowear.contact.operators.thermal_opening import ThermalOpening, condense_distortion
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
@@ -138,15 +139,14 @@ def test_condensed_distortion_equals_the_bodies_own():
     holder = hold(pairing, pairing.normals, [RigidMode(translation((0, -1)), load=1.0)])
     load = elastic.thermal_load(conducting.spaces)
     answers = influence(elastic, pairing, trace, basis, [load])
-    contact, (per_rise,) = answers.condensed(trace, holder), answers.per_rise
-    distortion = condense_distortion(conducting, per_rise, face)
+    contact, loads = answers.condensed(trace, holder), pressure_loads(trace, answers.weighted)
+    opening = ThermalOpening(elastic, loads, [load], answers.per_rise)
+    distortion = condense_distortion(conducting, opening, face.nodes)
     still = conducting.solve(np.zeros(len(conducting.fixed)))
-    rest = baseline_response(still, face.traces, COMM, per_rise)
+    rest = baseline_response(still, face.traces, COMM, opening.of([still]))
     exchange = face.exchange(np.where(pairing.points[:, 0] < 0.08, 3e3, 0.0))
-    per_heat, resting = (
-        distortion.per_friction_heat(exchange),
-        distortion.baseline_gap(exchange, rest),
-    )
+    coupled = distortion.coupled(exchange)
+    resting = coupled.baseline_gap(rest)
     q = 1e5 * np.exp(-pairing.points[:, 0] / 0.05)
     rise = conducting.solve(face.nodal_heat(exchange.state(q, rest), bath=True))
     right, forces = load.createVecs()
@@ -155,6 +155,6 @@ def test_condensed_distortion_equals_the_bodies_own():
     gap = sum_over_ranks(COMM, trace.T @ elastic.solve(forces.getArray()))
     weak = contact.weak(gap)
     np.testing.assert_allclose(
-        per_heat @ q + resting, weak, rtol=1e-7, atol=1e-9 * np.abs(weak).max()
+        coupled.by_friction(q) + resting, weak, rtol=1e-7, atol=1e-9 * np.abs(weak).max()
     )
     assert np.all(weak < 0)

@@ -4,16 +4,13 @@ from .friction.stick_slip import advance, follow
 from .friction.stick_slip_state import Loads, StickSlipState
 from .full.full_system import FullContact, FullSolution
 from .full.nitsche import normal_traction
-from .operators.condensation import (
-    CondensedContact,
-    condense,
-    condense_distortion,
-    condense_heat,
-)
-from .operators.heat import InterfaceHeat, ThermalState
+from .operators.condensation import CondensedContact, condense, condense_heat
+from .operators.heat import ThermalState
+from .operators.heat_exchange import InterfaceHeat
 from .operators.pressure import contact_zones, pressure_basis
 from .operators.rigid_motion import RigidHolder, RigidMode, Sliding, hold, sliding
 from .operators.tangential import FrictionalContact, condense_tangential
+from .operators.thermal_opening import condense_distortion
 from .operators.traces import gap_trace, value_trace, vector_trace
 from .search.face import Face, Surface, gather_face
 from .search.pairing import Pairing, pair

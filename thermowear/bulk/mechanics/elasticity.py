@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 from petsc4py import PETSc
 
@@ -17,9 +17,9 @@ from ..bodies import Bodies
 from ..body_mesh import BodyMesh
 from ..compiled import surface_area
 from ..direct_solver import eliminate
-from ..field import owned
+from ..field import owned, without_fixed
 from ..kinematics import Kinematics
-from ..solver_choice import SolverChoice, linear_solver
+from ..solver_choice import AnySolver, SolverChoice, linear_solver
 from ..spaces import Spaces, block_diagonal, lagrange_spaces
 from .elastic_body import ElasticBody, ElasticForms, ElasticMaterial
 
@@ -74,6 +74,26 @@ class Elasticity:
         parts = zip(self.each, self.spaces.split(loads), self.spaces.split(result), strict=True)
         for body, load, found in parts:
             found[...] = body.solve(load)
+        return result
+
+    def solvers_of_columns(self) -> Iterator[Callable]:
+        """Functions like `solve` for many columns; their results add up to the displacements.
+
+        Bodies that are factorised for this purpose alone are solved by functions of their own, each
+        valid until the next one is asked for. Every rank calls.
+        """
+        if not any(body.choice.factorises_columns for body in self.each):
+            yield self.solve
+            return
+        for index, body in enumerate(self.each):
+            with body.solver_of_columns() as factor:
+                yield partial(self._solved_alone, index, factor)
+
+    def _solved_alone(self, index: int, factor: AnySolver, loads: sp.csr_matrix) -> np.ndarray:
+        """Displacements of one body, zero in the others."""
+        result = np.zeros(loads.shape, order="F")
+        own, found = (self.spaces.split(values)[index] for values in (loads, result))
+        found[...] = factor.solve(without_fixed(own, self.each[index].fixed))
         return result
 
     def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from petsc4py import PETSc
@@ -15,13 +15,12 @@ from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.spaces import Spaces
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
-from .heat import FaceHeat, InterfaceHeat, ThermalDistortion
+from .face_nodes import FaceNodes, face_nodes
+from .heat_exchange import InterfaceHeat
 from .pressure import Basis, PressureSpace, scaled
 from .rigid_motion import RigidHolder
+from .thermal_opening import DistortionRows, blocks, elastic_columns
 from .traces import distributed, transpose_product
-
-_COLUMNS = {2: 32, 3: 128}
-"""Right-hand sides per solution, by dimension; limited by the caches, or the memory."""
 
 
 @dataclass(frozen=True)
@@ -56,11 +55,12 @@ class Influence(PressureSpace):
     trace : csr_matrix, shape (n_owned, n)
         Transposed gap trace Bᵀ.
     touching : ndarray of int, shape (n_touching,)
-        Owned degrees of freedom in cells at the contact, the only ones loaded by its tractions.
+        Owned degrees of freedom of the faces, the only ones loaded by contact tractions.
     near : ndarray, shape (n_touching, m)
         Rows of K⁻¹ Bᵗ w Ψ for these [m per coefficient].
     per_rise : tuple of ndarray, shape (n_owned of the temperature, m)
-        Gᵀ K⁻¹ Bᵗ w Ψ for each thermal load matrix G: weak gap per nodal rise [m³/K].
+        Gᵀ K⁻¹ Bᵗ w Ψ for each thermal load matrix G: weak gap per nodal rise [m³/K]; empty if they
+        are not stored, see `thermal_opening`.
     comm : mpi4py.MPI.Comm
     """
 
@@ -93,11 +93,12 @@ def influence(
     trace: sp.csr_matrix,
     basis: Basis,
     thermal_loads: Sequence[PETSc.Mat] = (),
+    distortion: DistortionRows | None = None,
 ) -> Influence:
     """Compute the elastic response to every pressure function. Every rank calls.
 
-    Solutions are reduced block by block: only rows at the contact and products with the thermal
-    loads are stored.
+    Solutions are reduced block by block: only rows at the contact are stored, and products with
+    the thermal loads, or with `distortion` only what remains of them there.
 
     Parameters
     ----------
@@ -109,35 +110,30 @@ def influence(
         Ψ, from `pressure.pressure_basis`.
     thermal_loads : sequence of petsc4py.PETSc.Mat
         Matrices G of nodal forces per nodal rise, from `Elasticity.thermal_load`.
+    distortion : DistortionRows, optional
+        Receives the weak gap per nodal rise of the first of them, which is not stored.
     """
     dim = elastic.bodies.dim
     weighted = scaled(pairing.weights, basis)
-    # only nodes of cells at the contact are loaded: 2 % of the rows
-    loads = (trace @ sp.csr_matrix(weighted)).tocsc()
+    loads = pressure_loads(trace, weighted)
     nodes = np.unique(np.flatnonzero(np.diff(trace.indptr)) // dim)
     touching = (nodes[:, None] * dim + np.arange(dim)).ravel()
-    near: list[np.ndarray] = []
-    per_rise: list[list[np.ndarray]] = [[] for _ in thermal_loads]
-    for columns in blocks(weighted.shape[1], dim):
-        displacements = elastic.solve(loads[:, columns].tocsr())
-        near.append(displacements[touching])
-        for matrix, products in zip(thermal_loads, per_rise, strict=True):
-            products.append(transpose_product(matrix, displacements))
-    return Influence(
-        basis,
-        weighted,
-        trace,
-        touching,
-        np.hstack(near),
-        tuple(np.hstack(products) for products in per_rise),
-        elastic.bodies.comm,
-    )
+    stored = thermal_loads if distortion is None else ()
+    near = np.zeros((len(touching), loads.shape[1]))
+    per_rise = [np.zeros((G.getLocalSize()[1], loads.shape[1]), order="F") for G in stored]
+    for columns, displacements in elastic_columns(elastic, loads):
+        near[:, columns] += displacements[touching]
+        for matrix, products in zip(stored, per_rise, strict=True):
+            products[:, columns] += transpose_product(matrix, displacements)
+        if distortion is not None:
+            distortion.add(columns, transpose_product(thermal_loads[0], displacements))
+    comm = elastic.bodies.comm
+    return Influence(basis, weighted, trace, touching, near, tuple(per_rise), comm)
 
 
-def blocks(count: int, dim: int) -> Iterator[slice]:
-    """Ranges of columns that are solved for together, in a mesh of dimension `dim`."""
-    size = _COLUMNS[dim]
-    return (slice(start, start + size) for start in range(0, count, size))
+def pressure_loads(trace: sp.csr_matrix, weighted: Basis) -> sp.csc_matrix:
+    """Nodal loads Bᵗ w Ψ of the pressure functions, shape (n_owned, m)."""
+    return (trace @ sp.csr_matrix(weighted)).tocsc()
 
 
 def condense(
@@ -163,44 +159,35 @@ def condense_heat(
     shift: float,
     partition: float | np.ndarray,
 ) -> InterfaceHeat:
-    """Condense conduction to the contact points; parameters as in `InterfaceHeat`.
+    """Condense conduction to the nodes of the contact faces; parameters as in `InterfaceHeat`.
 
     Every rank calls.
     """
     comm = conduction.spaces.comm
-    # the bodies are uncoupled in the bulk: one solution serves a column of both faces
-    heat = ((traces[0] + traces[1]) @ sp.diags(weights)).tocsc()
-    found = []
-    for columns in blocks(len(weights), conduction.spaces.dim):
-        field = conduction.respond(heat[:, columns].tocsr())
-        found.append([trace.T @ field for trace in traces])
-    Θ1, Θ2 = (sum_over_ranks(comm, np.hstack(columns)) for columns in zip(*found, strict=True))
-    return InterfaceHeat(weights, basis, traces, shift, partition, (Θ1, Θ2))
+    first, second = (face_nodes(trace, comm) for trace in traces)
+    Φ1, Φ2 = nodal_responses(conduction, (first, second))
+    at_nodes = (first, second), (Φ1, Φ2), conduction.symmetric
+    return InterfaceHeat(weights, basis, traces, shift, partition, *at_nodes)
 
 
-def condense_distortion(
-    conduction: Conduction, per_rise: np.ndarray, face: FaceHeat
-) -> ThermalDistortion:
-    """Condense ``Ψᵀ w B K⁻¹ G K_T⁻¹ Eᵀ w``: weak gap from heat at the contact.
+def nodal_responses(conduction: Conduction, faces: Sequence[FaceNodes]) -> list[np.ndarray]:
+    """Rise of the nodes of faces per heat into each of them, shape (n_f, n_f) [K/W].
 
-    With the known elastic influence this costs one (adjoint) thermal solution per pressure function
-    and no elastic one. Every rank calls.
-
-    Parameters
-    ----------
-    conduction : Conduction
-    per_rise : ndarray, shape (n_owned, m)
-        Weak gap per nodal rise, see `Influence` [m³/K].
-    face : FaceHeat
+    The faces belong to bodies that are not coupled by conduction: one solution serves a node of
+    each. Every rank calls.
     """
-    spaces, found = conduction.spaces, []
-    for columns in blocks(per_rise.shape[1], spaces.dim):
-        adjoint = conduction.adjoint_response(per_rise[:, columns])
-        found.append([(trace.T @ adjoint).T * face.weights for trace in face.traces])
-    first, second = (
-        sum_over_ranks(spaces.comm, np.vstack(rows)) for rows in zip(*found, strict=True)
-    )
-    return ThermalDistortion((first, second))
+    comm, dim = conduction.spaces.comm, conduction.spaces.dim
+    widest, n_owned = max(face.count for face in faces), len(conduction.fixed)
+    nodes = [face.first + np.arange(len(face.rows)) for face in faces]
+    at = np.concatenate([face.rows for face in faces]), np.concatenate(nodes)
+    heat = sp.csc_matrix((np.ones(len(at[0])), at), shape=(n_owned, widest))
+    found = [np.empty((face.count, face.count), order="F") for face in faces]
+    for columns in blocks(widest, dim):
+        field = conduction.respond(heat[:, columns].tocsr())
+        for face, response in zip(faces, found, strict=True):
+            width = response[:, columns].shape[1]
+            response[:, columns] = np.vstack(comm.allgather(field[face.rows, :width]))
+    return found
 
 
 def bath_matrix(spaces: Spaces, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:

@@ -22,11 +22,9 @@ from .condensation import transfer_matrix
 from .heat import (
     NO_HEAT_SINK,
     BaselineResponse,
-    FaceHeat,
-    HeatExchange,
-    InterfaceHeat,
     ThermalState,
 )
+from .heat_exchange import FaceHeat, HeatExchange, InterfaceHeat
 
 _TOLERANCE = 1e-9
 """Reduction of the temperature jump in perfect contact."""
@@ -49,7 +47,7 @@ class CoupledHeat(FaceHeat):
     conduction: Conduction
 
     def exchange(self, conductance: np.ndarray) -> CoupledExchange:
-        """Couple the faces by a conductance (n,), see `FaceHeat.divided`. Every rank calls."""
+        """Couple the faces by a conductance (n,), see `divided`. Every rank calls."""
         return CoupledExchange(self, conductance)
 
 

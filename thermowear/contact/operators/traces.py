@@ -1,7 +1,7 @@
 """Trace operators: from nodal values of a body to values at the contact points.
 
 Stored transposed and distributed by owned rows, as nodal loads are: column j holds the shape
-functions of the cell of one side at contact point j.
+functions of the facet of one side at contact point j. All others of its cell vanish there.
 """
 
 from __future__ import annotations
@@ -68,7 +68,10 @@ def distributed(spaces: Spaces, trace: sp.csr_matrix) -> PETSc.Mat:
 
 
 def _local_values(space: fem.FunctionSpace, side: PairedFace):
-    """Local nodes, points and basis values at the points whose cell this rank owns."""
+    """Local nodes on the facets, points and basis values at the points whose cell this rank owns.
+
+    Of the values of a cell those of nodes off the facet vanish, and are left out.
+    """
     mesh = space.mesh
     mine = np.flatnonzero(side.face.rank[side.facet] == mesh.comm.rank)
     element = basis_element(space)
@@ -77,7 +80,9 @@ def _local_values(space: fem.FunctionSpace, side: PairedFace):
     cells = side.face.cell[side.facet[mine]]
     if not element.dof_transformations_are_permutations:  # permutations are part of the dofmap
         values = _oriented(mesh, element, cells, values)
-    nodes = space.dofmap.list[cells].astype(np.int64)
+    on_facet = np.array(element.entity_closure_dofs[-2])[side.face.local_facet[side.facet[mine]]]
+    nodes = np.take_along_axis(space.dofmap.list[cells].astype(np.int64), on_facet, axis=1)
+    values = np.take_along_axis(values, on_facet, axis=1)
     point = np.repeat(mine, nodes.shape[1])
     return nodes.ravel(), point, values.ravel()
 

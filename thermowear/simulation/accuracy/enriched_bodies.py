@@ -17,7 +17,8 @@ from ...bulk.heat.heat_equation import conducting, given_rises, transferring
 from ...bulk.mechanics.elasticity import fixed_values
 from ...bulk.mechanics.enriched import EnrichedProblem
 from ...bulk.mechanics.surplus import surplus_spaces
-from ...contact.operators.heat import BaselineResponse, InterfaceHeat
+from ...contact.operators.heat import BaselineResponse
+from ...contact.operators.heat_exchange import InterfaceHeat
 from ...contact.operators.pressure import dense, scaled
 from ...contact.operators.traces import gap_trace, value_trace, vector_trace
 from ...model.conditions import Heat
@@ -143,7 +144,9 @@ def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -
 
     Approximation: each point has a resistance of its own in either body, its rise per own flux.
     """
-    own = np.abs([np.diag(response) for response in face.response])
+    pairs = zip(face.values, face.response, strict=True)
+    diagonals = [values.multiply(values @ response).sum(axis=1) for values, response in pairs]
+    own = np.abs(face.weights * np.array(diagonals))
     with np.errstate(divide="ignore"):
         flux = (rises[1] - rises[0]) / (own.sum(axis=0) + 1 / conductance)
     return rises + own * flux * np.array([[1.0], [-1.0]])

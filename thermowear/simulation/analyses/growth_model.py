@@ -14,7 +14,7 @@ from petsc4py import PETSc
 
 import numpy as np
 
-from ...contact.operators.heat import baseline_response
+from ...contact.operators.heat_exchange import HeatExchange, baseline_response
 from ...laws.stability import LoadFree, PerturbationMatrices, Rate
 from ...parallel import sum_over_ranks
 from ..heat.heat_steps import HeatSteps
@@ -115,14 +115,12 @@ class GrowthModel:
         """
         steps = self._steps
         bodies = steps.operators if rate == 0.0 else steps.operators_within(1 / rate)
-        face = bodies.face
-        exchange = bodies.condensed_exchange(self._conditions.conductance)
-        nodal = sum(
-            trace @ (face.weights[:, None] * (share @ self._friction))
-            for trace, share in zip(face.traces, exchange.per_friction_heat, strict=True)
-        )
-        crossing = exchange.crossing_per_friction_heat @ self._friction
-        self._extend(bodies.conduction.respond(np.asarray(nodal)), crossing)
+        exchange = bodies.known(self._conditions.conductance).exchange
+        assert isinstance(exchange, HeatExchange)
+        crossing = exchange.solved(self._friction)[1]
+        loads = exchange.loads(self._friction)
+        heat = loads + exchange.coupling @ exchange.response(loads)  # bath included
+        self._extend(bodies.conduction.respond(exchange.face.on_nodes(heat)), crossing)
         self._rates.append(rate)
 
     def matrices(self) -> PerturbationMatrices:
@@ -130,8 +128,7 @@ class GrowthModel:
         system, space, thermal = self._system, self._space, self._thermal
         conduction, X = thermal.conduction, self._fields
         assert conduction.capacity is not None
-        at = baseline_response(X, thermal.face.traces, system.comm, system.influence.per_rise[0])
-        T1, T2 = at.rise
+        T1, T2 = baseline_response(X, thermal.face.traces, system.comm).rise
         weights = system.weights[:, None]
         f = np.reshape(thermal.face.partition, (-1, 1))
         exchanged = weights * self._crossing  # each field satisfies the interface heat law
@@ -140,7 +137,7 @@ class GrowthModel:
             carried = self._product(conduction.advection.carried, X)
         return PerturbationMatrices(
             elastic=space(self._elastic),
-            opening=space.gaps.T @ at.opening,
+            opening=space.gaps.T @ system.thermal_opening.of([X]),
             heated=(f * T1 + (1 - f) * T2).T @ (weights * self._friction),
             conducted=self._product(conduction.conductivity, X) - carried + (T2 - T1).T @ exchanged,
             carried=carried,

@@ -135,8 +135,8 @@ class PerturbedContact:
         """Weak thermal opening per pressure coefficient, H, at the given speed."""
         face, conductance = self._thermal_bodies.face, self._conditions.conductance
         bodies = HeatOperators(self._system, self._thermal_bodies.conduction, face)
-        per_heat = bodies.distortion.per_friction_heat(bodies.condensed_exchange(conductance))
-        return per_heat @ scaled(self._conditions.heating, self._system.basis)
+        friction_heat = scaled(self._conditions.heating, self._system.basis)
+        return bodies.coupled_distortion(conductance).by_friction(friction_heat)
 
     @cached_property
     def _space(self) -> LoadFree:

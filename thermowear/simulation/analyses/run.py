@@ -116,7 +116,7 @@ def analyse(
     Starts anew, or from the checkpoint of an analysis of the same system.
     """
     choice = system.choice
-    for note in (choice.note(), _factorised_conduction(system)):
+    for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:
             observer.note(note)
     if system.pairing.unpaired > _UNPAIRED:
@@ -163,6 +163,14 @@ def _factorised_conduction(system: System) -> str | None:
     if not system.choice.iterative or thermal is None or thermal.conduction.even is None:
         return None
     return 'solver: direct for the temperatures, as heat.advection = "spread" joins their unknowns'
+
+
+def _streamed(system: System, analysis: Analysis) -> str | None:
+    """Note on the response of the gap to temperatures, where it is needed and not stored."""
+    needed = system.model.interface.method.name == "condensed" and not (
+        system.choice.single and needs_single_solution(system.model, analysis)
+    )
+    return system.opening_storage.note() if needed else None
 
 
 def _iterations(system: System) -> dict[str, int]:

@@ -136,7 +136,12 @@ class ReciprocatingProblem(WearProblem):
         return max(_unevenness(rate, place) for rate, place in parts if rate.any())
 
     def stage(
-        self, before: InterfaceState, step: float, time: float, guess: InterfaceState
+        self,
+        before: InterfaceState,
+        step: float,
+        time: float,
+        guess: InterfaceState,
+        last: bool = True,
     ) -> InterfaceState:
         """End of an implicit Euler step of wear."""
         contact = self._solve(before.worn[0], step, guess.contact)

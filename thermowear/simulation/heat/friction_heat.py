@@ -9,6 +9,7 @@ import numpy as np
 
 from ...balances import relative
 from ...contact.operators.heat import BaselineResponse, ThermalState
+from ...contact.operators.heat_exchange import InterfaceHeat
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem
@@ -170,8 +171,11 @@ class FrictionHeat:
 
 def _kept_sizes(system: System, thermal: ThermalSystem) -> int:
     """Number of step sizes whose operators fit into the memory; every rank calls."""
-    conduction, points = thermal.conduction, len(thermal.face.weights)
-    dense, nodes = 12 * points**2, len(conduction.fixed)
+    conduction, face = thermal.conduction, thermal.face
+    faces = [nodes.count for nodes in face.nodes] if isinstance(face, InterfaceHeat) else [0]
+    # responses of the faces, their exchange, and the weak gap per heat
+    functions, nodes = system.basis.shape[1], len(conduction.fixed)
+    dense = sum(faces) * (max(faces) + sum(faces) + 2 * functions) + functions**2
     numbers = dense + _FILL[conduction.spaces.dim] * nodes
     least = min(system.comm.allgather(_MEMORY / (8 * numbers)))
     return max(int(least), _FEWEST)

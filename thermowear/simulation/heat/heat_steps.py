@@ -10,23 +10,23 @@ from typing import Any
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
-from ...contact.operators.condensation import condense_distortion, condense_heat
-from ...contact.operators.coupled_heat import AnyExchange, AnyFace
-from ...contact.operators.heat import (
-    BaselineResponse,
-    HeatExchange,
+from ...contact.operators.condensation import condense_heat
+from ...contact.operators.coupled_heat import AnyFace
+from ...contact.operators.heat import BaselineResponse, ThermalState
+from ...contact.operators.heat_exchange import (
+    CoupledDistortion,
     InterfaceHeat,
-    ThermalDistortion,
-    ThermalState,
     baseline_response,
+    opened_by,
 )
 from ...contact.operators.pressure import scaled
+from ...contact.operators.thermal_opening import ThermalOpening
 from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions
-from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..system.thermal_system import ThermalLoad, ThermalSystem
+from .exchange_cache import ExchangeCache, KnownExchange, thermal_distortion
 
 _ROUNDING = 1e-3
 """Least scale of the heat balance, relative to the initial heat content (rounding)."""
@@ -109,27 +109,13 @@ class HeatOperators:
         self.conduction, self.face, self._system = conduction, face, system
         method, condensed = system.model.interface.method.name, isinstance(face, InterfaceHeat)
         self.distorts = method == "condensed" and condensed
-        self._exchange: tuple[bytes, AnyExchange] | None = None
-        self._compliance: tuple[HeatExchange, bytes, np.ndarray] | None = None
+        self._exchanges = ExchangeCache(face)
+        self._last: tuple[bytes, KnownExchange] | None = None
 
     @cached_property
-    def per_rise(self) -> np.ndarray:
-        """Weak gap per nodal rise, shape (n_owned, m) [m³/K]."""
-        return self._system.influence.per_rise[0]
-
-    @cached_property
-    def distortion(self) -> ThermalDistortion:
-        """Weak gap per heat at the faces. Every rank calls."""
-        system, conduction = self._system, self.conduction
-        # those of time steps and tangents are not shared with other systems
-        steady = system.thermal is not None and conduction is system.thermal.conduction
-        parts = system.parts if steady else SetupCache()
-        with system.phases("condense distortion"):
-            return parts.get(
-                "distortion",
-                system.inputs.conduction,
-                lambda: condense_distortion(conduction, self.per_rise, self.face),
-            )
+    def slopes(self) -> list[np.ndarray]:
+        """Excess rises of temperature-dependent expansions per rise, shape (n_owned,) each."""
+        return []
 
     def rise(self, load: ThermalLoad, heat: np.ndarray) -> np.ndarray:
         """Nodal rise (n_owned,) by nodal heat and prescribed temperatures; every rank calls [K]."""
@@ -137,30 +123,43 @@ class HeatOperators:
 
     def baseline(self, rise: np.ndarray) -> BaselineResponse:
         """Interface response to a nodal rise (n_owned,); every rank calls."""
-        per_rise = self.per_rise if self.distorts else None
-        return baseline_response(rise, self.face.traces, self._system.comm, per_rise)
+        opening = self.opened([rise]) if self.distorts else None
+        return baseline_response(rise, self.face.traces, self._system.comm, opening)
 
-    def exchange(self, conductance: np.ndarray) -> AnyExchange:
-        """Heat exchange of the faces for conductances at the points, shape (n,)."""
+    def opened(self, rises: list[np.ndarray]) -> np.ndarray:
+        """Weak gap opened by nodal rises, see `ThermalOpening.of`; every rank calls."""
+        opening = self._opening
+        if opening.per_rise:
+            return opened_by(opening.per_rise, rises, self._system.comm)
+        return opening.of(rises)
+
+    @cached_property
+    def _opening(self) -> ThermalOpening:
+        return self._system.thermal_opening
+
+    def known(self, conductance: np.ndarray) -> KnownExchange:
+        """Heat exchange of the faces for conductances at the points (n,), and its distortion."""
         key = conductance.tobytes()
-        if self._exchange is None or self._exchange[0] != key:
-            self._exchange = None  # frees its memory
-            self._exchange = key, self.face.exchange(conductance)
-        return self._exchange[1]
+        if self._last is None or self._last[0] != key:
+            self._last = None  # frees its memory
+            self._last = key, self._exchanges.of(conductance)
+        return self._last[1]
 
-    def condensed_exchange(self, conductance: np.ndarray) -> HeatExchange:
-        """Heat exchange of condensed bodies, which contact solvers need."""
-        exchange = self.exchange(conductance)
-        assert isinstance(exchange, HeatExchange)
-        return exchange
+    def coupled_distortion(self, conductance: np.ndarray) -> CoupledDistortion:
+        """Distortion of faces that exchange heat by conductances at the points, shape (n,)."""
+        known = self.known(conductance)
+        if known.distortion is None:
+            uncoupled = thermal_distortion(self._system, self.conduction, self.face, self.slopes)
+            known.distortion = self._exchanges.distortion(known, uncoupled)
+        return known.distortion
 
-    def compliance(self, exchange: HeatExchange, heating: np.ndarray, basis: np.ndarray):
+    def compliance(self, conductance: np.ndarray, heating: np.ndarray, basis: np.ndarray):
         """Thermal compliance ``H diag(mu v) Ψ`` for a heating ``mu v`` (n,) [m/s], (m, m)."""
-        key, last = heating.tobytes(), self._compliance
-        if last is None or last[0] is not exchange or last[1] != key:
-            per_heat = self.distortion.per_friction_heat(exchange)
-            last = self._compliance = exchange, key, per_heat @ scaled(heating, basis)
-        return last[2]
+        key, known = heating.tobytes(), self.known(conductance)
+        if known.compliance is None or known.compliance[0] != key:
+            distortion = self.coupled_distortion(conductance)
+            known.compliance = key, distortion.by_friction(scaled(heating, basis))
+        return known.compliance[1]
 
 
 @dataclass(eq=False)
@@ -181,11 +180,11 @@ class HeatStep:
     load: ThermalLoad
     supplied: np.ndarray
     baseline: BaselineResponse
-    _gap: tuple[HeatExchange, np.ndarray] | None = None
+    _gap: tuple[CoupledDistortion, np.ndarray] | None = None
 
     def faces(self, conditions: InterfaceConditions, pressure: np.ndarray) -> ThermalState:
         """Temperatures and fluxes of the faces under a pressure at the points [Pa]."""
-        exchange = self.operators.exchange(conditions.conductance)
+        exchange = self.operators.known(conditions.conductance).exchange
         return exchange.state(conditions.heating * pressure, self.baseline)
 
     def rise(self, faces: ThermalState) -> np.ndarray:
@@ -198,10 +197,10 @@ class HeatStep:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Weak gap per pressure coefficient by friction heat (m, m), by other heat (m,) [m³]."""
         operators = self.operators
-        exchange = operators.condensed_exchange(conditions.conductance)
-        if self._gap is None or self._gap[0] is not exchange:
-            self._gap = exchange, operators.distortion.baseline_gap(exchange, self.baseline)
-        return operators.compliance(exchange, conditions.heating, basis), self._gap[1]
+        distortion = operators.coupled_distortion(conditions.conductance)
+        if self._gap is None or self._gap[0] is not distortion:
+            self._gap = distortion, distortion.baseline_gap(self.baseline)
+        return operators.compliance(conditions.conductance, conditions.heating, basis), self._gap[1]
 
     def converged(self, conditions: InterfaceConditions, pressure: np.ndarray) -> bool:
         """Test whether the last coupling has converged at a pressure: linear heat always has."""

@@ -14,11 +14,8 @@ import numpy as np
 
 from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.varying import VaryingExpansion
-from ...contact.operators.heat import (
-    BaselineResponse,
-    ThermalState,
-    baseline_response,
-)
+from ...contact.operators.heat import BaselineResponse, ThermalState
+from ...contact.operators.heat_exchange import baseline_response
 from ...errors import ComputationError
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
@@ -42,32 +39,27 @@ class TangentOperators(HeatOperators):
         super().__init__(system, conduction, face)
         self._at = at
 
-    @cached_property
-    def _expansions(self) -> list[tuple[VaryingExpansion, np.ndarray]]:
-        """Varying expansions, each with the weak gap per nodal excess, shape (n_owned, m)."""
+    @property
+    def _expansions(self) -> tuple[VaryingExpansion, ...]:
         assert self._system.thermal is not None
-        per_excess = self._system.influence.per_rise[1:]
-        return list(zip(self._system.thermal.expansions, per_excess, strict=True))
+        return self._system.thermal.expansions
 
     @cached_property
-    def per_rise(self) -> np.ndarray:
-        result = self._system.influence.per_rise[0]
-        if self._at is not None:
-            for expansion, per_excess in self._expansions:
-                result = result + expansion.slope(self._at)[:, None] * per_excess
-        return result
+    def slopes(self) -> list[np.ndarray]:
+        if self._at is None:
+            return []
+        return [expansion.slope(self._at) for expansion in self._expansions]
 
     def baseline(self, rise: np.ndarray, about: np.ndarray | None = None) -> BaselineResponse:
         """Interface response to a nodal rise, its distortion linearised about another rise."""
         if not self.distorts:
             return super().baseline(rise)
-        excess: np.ndarray | float = 0.0
         about = rise if about is None else about
-        for expansion, per_excess in self._expansions:
-            linear = 0.0 if self._at is None else expansion.slope(self._at) * about
-            excess = excess + per_excess.T @ (expansion.excess(about) - linear)
-        comm = self._system.comm
-        return baseline_response(rise, self.face.traces, comm, self.per_rise, excess)
+        excesses = [expansion.excess(about) for expansion in self._expansions]
+        for excess, slope in zip(excesses, self.slopes, strict=False):
+            excess += slope * (rise - about)
+        opening = self.opened([rise, *excesses])
+        return baseline_response(rise, self.face.traces, self._system.comm, opening)
 
 
 Linearisation = tuple[TangentOperators, np.ndarray, BaselineResponse]

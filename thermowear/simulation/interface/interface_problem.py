@@ -40,15 +40,14 @@ class InterfaceProblem(WearProblem):
         self.system, self._method, self.heat = system, method, heat
         self._condition_model = ConditionModel(system)
         self._last_conditions: tuple[bytes, InterfaceConditions] | None = None
-        self._edge = GrowingEdge(system, method)
         self._laws, self._spreads = list(system.laws.values()), list(system.spreads.values())
-        self._gap = system.pairing.gap - system.holder.imposed
-        n, area = len(self._gap), float(system.weights.sum())
+        self._edge, gap = GrowingEdge(system, method), system.pairing.gap
+        self._gap, area = gap - system.holder.imposed, float(system.weights.sum())
+        n, self._rigid = len(gap), Slope.diagonal(np.zeros(len(gap)))
         self._softness = np.full(n, system.softness)
-        self._rigid = Slope.diagonal(np.zeros(n))
         self._unworn = np.zeros((len(self._laws), n))
-        uniform = np.full(n, (system.model.holder.force or area) / area)
-        self._guess = ContactSolution(uniform, np.zeros(0), None)
+        mean = (system.model.holder.force or area) / area
+        self._guess = ContactSolution(np.full(n, mean), np.zeros(0), None)
         self.stores_heat = system.model.heat is not None and system.model.heat.transient
 
     def unworn(self) -> InterfaceState:
@@ -147,35 +146,39 @@ class InterfaceProblem(WearProblem):
         return replace(state, pointwise=edge)
 
     def stage(
-        self, before: InterfaceState, step: float, time: float, guess: InterfaceState
+        self,
+        before: InterfaceState,
+        step: float,
+        time: float,
+        guess: InterfaceState,
+        last: bool = True,
     ) -> InterfaceState:
         """Implicit Euler step of wear, and of heat in transient conduction.
 
-        State-dependent conditions are those at the end of the step, except for the points that
-        exchange heat: the contact set of the guess.
+        Conditions are those at its end, but heat is exchanged by the contact set of the guess.
         """
         heat = None if self.heat is None else self.heat.steps.after(before.stored, step, time)
-        last, edge = guess.contact, before.pointwise
+        found, edge, model = guess.contact, before.pointwise, self._condition_model
+        faced = heat is not None and (last or model.depends_on_state or before.stored is not None)
 
         def respond(conditions: InterfaceConditions) -> InterfaceState:
-            nonlocal last
-            last = self._solve(before.worn, conditions, heat, edge, last, step)
-            faces = None if heat is None else heat.faces(conditions, last.pressure)
-            worn = before.worn + step * self._rates(conditions)(last.pressure)
-            return InterfaceState(worn, last, before.peak, faces, pointwise=edge)
+            nonlocal found
+            found = self._solve(before.worn, conditions, heat, edge, found, step)
+            faces = heat.faces(conditions, found.pressure) if heat is not None and faced else None
+            worn = before.worn + step * self._rates(conditions)(found.pressure)
+            return InterfaceState(worn, found, before.peak, faces, pointwise=edge)
 
-        model = self._condition_model
         if model.depends_on_state:
             closed = guess.pressure > 0
-            conditions, found = self_consistent(model, time, guess, respond, _STEP, closed)
+            conditions, state = self_consistent(model, time, guess, respond, _STEP, closed)
         else:
             conditions = self.conditions(guess, time)
-            found = respond(conditions)
-        if self.heat is None or heat is None or before.stored is None or found.faces is None:
-            return found
-        made = conditions.heating * found.pressure
-        stored = self.heat.steps.end(before.stored, step, heat, found.faces, made)
-        return replace(found, stored=stored)
+            state = respond(conditions)
+        if self.heat is None or heat is None or before.stored is None or state.faces is None:
+            return state
+        made = conditions.heating * state.pressure
+        stored = self.heat.steps.end(before.stored, step, heat, state.faces, made)
+        return replace(state, stored=stored)
 
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
         """Interface conditions in a state at a time [s]; constant ones are kept."""

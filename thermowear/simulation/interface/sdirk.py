@@ -89,7 +89,12 @@ class WearProblem(ABC):
 
     @abstractmethod
     def stage(
-        self, before: InterfaceState, step: float, time: float, guess: InterfaceState
+        self,
+        before: InterfaceState,
+        step: float,
+        time: float,
+        guess: InterfaceState,
+        last: bool = True,
     ) -> InterfaceState:
         """Implicit Euler step.
 
@@ -101,6 +106,9 @@ class WearProblem(ABC):
             Size and end of the step [s].
         guess : InterfaceState
             Initial guess of the result.
+        last : bool, optional
+            False if the step continues from the result: it then lacks temperatures of the faces on
+            which nothing depends.
 
         Raises
         ------
@@ -169,17 +177,18 @@ class WearProblem(ABC):
 
 
 def advance(
-    problem: WearProblem, state: InterfaceState, time: float, step: float
+    problem: WearProblem, state: InterfaceState, time: float, step: float, last: bool = True
 ) -> InterfaceState:
     """Step of the two-stage, second-order, L-stable SDIRK method.
 
     It is stiffly accurate, so the contact conditions hold at the end of the step, and its weights
     are positive, so wear never decreases (Alexander, SIAM J. Numer. Anal. 14 (1977) 1006). Both
-    stages are implicit Euler steps of size γ times the step.
+    stages are implicit Euler steps of size γ times the step; `last` as in `WearProblem.stage`.
     """
-    first = problem.stage(state, _γ * step, time + _γ * step, state)
+    first = problem.stage(state, _γ * step, time + _γ * step, state, last=False)
     before = state.towards(first, (1 - _γ) / _γ)
-    return replace(problem.stage(before, _γ * step, time + step, first), peak=state.largest)
+    second = problem.stage(before, _γ * step, time + step, first, last)
+    return replace(second, peak=state.largest)
 
 
 @dataclass(frozen=True)
@@ -218,8 +227,8 @@ def advance_with_error(
     """
     # the same points for the whole step and its halves: a change of points is no time error
     state = problem.begin(state)
-    whole = advance(problem, state, time, step)
-    middle = advance(problem, state, time, step / 2)
+    whole = advance(problem, state, time, step, last=False)
+    middle = advance(problem, state, time, step / 2, last=False)
     halves = advance(problem, middle, time + step / 2, step / 2)
     rounding = _ROUNDING * halves.largest
     scale = max(float(halves.pressure.max()), rounding)

@@ -14,8 +14,15 @@ import scipy.sparse as sp
 from ...bulk.bodies import Bodies
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.solver_choice import SolverChoice
-from ...contact.operators.condensation import CondensedContact, Influence, influence
+from ...contact.operators.condensation import (
+    CondensedContact,
+    Influence,
+    influence,
+    pressure_loads,
+)
+from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.operators.rigid_motion import RigidHolder, Sliding, hold
+from ...contact.operators.thermal_opening import DistortionRows, OpeningStorage, ThermalOpening
 from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import Pairing
 from ...laws.distribution import Distribution
@@ -179,11 +186,36 @@ class System:
     @property
     def influence(self) -> Influence:
         """Responses of the bodies to the pressure basis functions. Every rank calls."""
+        return self.parts.get("influence", self.inputs.elasticity, self._influence)
+
+    def _influence(self) -> Influence:
         bodies = self.elastic, self.pairing, self.trace, self.basis
-        thermal_loads = () if self.thermal is None else self.thermal.load_matrices
-        return self.parts.get(
-            "influence", self.inputs.elasticity, lambda: influence(*bodies, thermal_loads)
-        )
+        if self.thermal is None:
+            return influence(*bodies)
+        loads = self.thermal.load_matrices
+        if self.opening_storage.kept:
+            return influence(*bodies, loads)
+        rows = DistortionRows(*self.thermal.condensed, self.basis.shape[1])
+        found = influence(*bodies, loads, rows)
+        self.parts.get("distortion", self.inputs.conduction, lambda: rows.distortion)
+        return found
+
+    @cached_property
+    def opening_storage(self) -> OpeningStorage:
+        """Memory of the weak gap per temperature of the bodies."""
+        thermal, m = self.thermal, self.basis.shape[1]
+        if thermal is None or isinstance(thermal.face, CoupledHeat):
+            return OpeningStorage(0, m, self.choice.available)
+        nodes = len(thermal.load_matrices) * thermal.conduction.spaces.total
+        return OpeningStorage(nodes, m, self.choice.available)
+
+    @cached_property
+    def thermal_opening(self) -> ThermalOpening:
+        """Weak gap opened by temperatures of the bodies. Every rank calls."""
+        assert self.thermal is not None
+        found = self.influence
+        loads = pressure_loads(self.trace, found.weighted)
+        return ThermalOpening(self.elastic, loads, self.thermal.load_matrices, found.per_rise)
 
     @cached_property
     def contact(self) -> CondensedContact:

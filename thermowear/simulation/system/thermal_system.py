@@ -27,7 +27,8 @@ from ...bulk.solver_choice import SolverChoice
 from ...bulk.spaces import lagrange_spaces
 from ...contact.operators.condensation import bath_matrix, condense_heat
 from ...contact.operators.coupled_heat import CoupledHeat
-from ...contact.operators.heat import InterfaceHeat
+from ...contact.operators.face_nodes import FaceNodes
+from ...contact.operators.heat_exchange import InterfaceHeat
 from ...contact.operators.traces import value_trace
 from ...contact.search.pairing import Pairing
 from ...laws.time_course import TimeFunction
@@ -146,6 +147,12 @@ class ThermalSystem:
     def load_matrices(self) -> list[PETSc.Mat]:
         """Nodal forces per nodal rise [N/K]: of all bodies, then of each varying expansion."""
         return [self.load, *(expansion.matrix for expansion in self.expansions)]
+
+    @property
+    def condensed(self) -> tuple[Conduction, tuple[FaceNodes, FaceNodes]]:
+        """Conduction, and the nodes of the faces to which it is condensed."""
+        assert isinstance(self.face, InterfaceHeat)
+        return self.conduction, self.face.nodes
 
     def forces(self, rise: np.ndarray) -> np.ndarray:
         """Nodal forces of a temperature rise, owned rows [N]."""

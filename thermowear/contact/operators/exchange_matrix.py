@@ -1,0 +1,133 @@
+"""Matrices of the heat exchange of two faces: division of conductances, coupling of the nodes."""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+import scipy.sparse as sp
+
+_REGULARITY = 1e-12
+"""Regularisation of an infinite resistance, relative to that of the bodies: keeps heat flux
+functions independent that differ only where no heat crosses."""
+_MAX_DIRECT_RATIO = 10.0
+"""Largest conductance treated point by point, relative to that of a layer of the bodies as thick as
+the support of a basis function."""
+
+Division: TypeAlias = "tuple[np.ndarray, np.ndarray, np.ndarray]"
+"""Parts of a conductance at the points, see `divided`."""
+
+
+def divided(conductance: np.ndarray, bodies: float) -> Division:
+    """Divide conductances (n,) into parts that are finite and well scaled.
+
+    Up to a conductance ``k``, a multiple of that of the bodies, heat crosses point by point:
+    ``c = h (T2 - T1)``. Nonmatching finite elements cannot represent a larger one pointwise,
+    and small temperature differences times large numbers would lose digits: the excess
+    ``h - k`` has a resistance ``r = 1/(h - k)``, zero in perfect contact, and an unknown of
+    moderate size, ``z = Ψ μ``. With ``η = 1/(1 + k r)`` it gives both the exchanged heat
+    ``η z`` and the temperature jump ``r η z = (1 - η) z / k``, which is imposed weakly with the
+    test functions ``η Ψ``. The equations are symmetric and regular from zero to infinite
+    conductance.
+
+    Parameters
+    ----------
+    conductance : ndarray, shape (n,)
+        [W/(m² K)]
+    bodies : float
+        Conductance of a layer of the bodies as thick as the support of a basis function.
+
+    Returns
+    -------
+    direct : ndarray, shape (n,)
+        Conductance point by point [W/(m² K)].
+    passing_fraction : ndarray, shape (n,)
+        Fraction η.
+    resistance : ndarray, shape (n,)
+        Resistance ``η r η`` of the unknowns [m² K/W].
+    """
+    limit = _MAX_DIRECT_RATIO * bodies
+    direct = np.minimum(conductance, limit)
+    passing_fraction, blocked_fraction = _parts(limit, conductance - direct)
+    resistance = blocked_fraction * (passing_fraction + _REGULARITY * blocked_fraction) / limit
+    return direct, passing_fraction, resistance
+
+
+def _parts(limit: float, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Fractions ``h/(h + k)`` and ``k/(h + k)`` of conductances from zero to infinity."""
+    inverse = np.full(len(conductance), np.inf)
+    np.divide(limit, conductance, out=inverse, where=conductance > 0)
+    return 1 / (1 + inverse), limit / (limit + conductance)
+
+
+def jump_scale(
+    weights: np.ndarray,
+    basis: sp.csr_array,
+    values: tuple[sp.csr_array, sp.csr_array],
+    response: tuple[np.ndarray, np.ndarray],
+    division: Division,
+) -> np.ndarray:
+    """Scale of the functions of heat that crosses beyond the direct part, shape (m,).
+
+    By the temperature jump that they cause; zero where no such heat crosses.
+
+    Parameters
+    ----------
+    weights : ndarray, shape (n,) [m²]
+    basis : csr_array, shape (n, m)
+    values : tuple of csr_array, shape (n, n_f)
+        Temperature of each face at the points per nodal value, see `FaceNodes`.
+    response : tuple of ndarray, shape (n_f, n_f)
+        See `InterfaceHeat`.
+    division : Division
+    """
+    _, passing_fraction, resistance = division
+    crossing = (sp.diags_array(weights * passing_fraction) @ basis).tocsc()
+    result, used = np.zeros(basis.shape[1]), np.unique(crossing.nonzero()[1])
+    basis, crossing = basis.tocsc()[:, used], crossing[:, used]
+    jumps = (basis.T @ sp.diags_array(weights * resistance) @ basis).diagonal()
+    for face, Φ in zip(values, response, strict=True):
+        heat = face.T @ crossing
+        jumps = jumps + heat.multiply(Φ @ heat).sum(axis=0)
+    result[used] = 1 / np.sqrt(jumps)
+    return result
+
+
+def scaled_functions(basis: sp.csr_array, scale: np.ndarray) -> sp.csr_array:
+    """Functions Ψ with a scale other than zero, times it, shape (n, n_z)."""
+    used = np.flatnonzero(scale)
+    return (basis.tocsc()[:, used] @ sp.diags_array(scale[used])).tocsr()
+
+
+def coupling_matrix(
+    weights: np.ndarray,
+    functions: sp.csr_array,
+    values: tuple[sp.csr_array, sp.csr_array],
+    division: Division,
+    shift: float,
+) -> sp.csr_array:
+    """Matrix N: heat into the nodes of both faces, and weak temperature jumps.
+
+    Linear in the division of the conductances and in the heat transfer to the bath.
+
+    Parameters
+    ----------
+    weights, values, division
+        See `jump_scale`.
+    functions : csr_array, shape (n, n_z)
+        See `scaled_functions`.
+    shift : float
+        Heat transfer to the bath [W/(m² K)].
+    """
+    (direct, passing_fraction, resistance), (P1, P2), w = division, values, weights
+    bath, across = sp.diags_array(w * (shift - direct)), sp.diags_array(w * direct)
+    C1, C2 = (P.T @ sp.diags_array(w * passing_fraction) @ functions for P in values)
+    resisted = functions.T @ sp.diags_array(w * resistance) @ functions
+    return sp.block_array(
+        [
+            [P1.T @ bath @ P1, P1.T @ across @ P2, C1],
+            [P2.T @ across @ P1, P2.T @ bath @ P2, -C2],
+            [C1.T, -C2.T, resisted],
+        ],
+        format="csr",
+    )

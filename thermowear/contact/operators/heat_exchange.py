@@ -1,0 +1,296 @@
+"""Heat exchange of faces condensed to their nodes: conductance and perfect contact.
+
+With the values P of the shape functions at the contact points, the rise of a face is
+``T = T⁰ + P θ`` and the heat into its nodes ``Q = Pᵀ w q``; conduction condensed to the nodes of
+the face is ``θ = Φ Q``. Heat crosses where faces differ in temperature, so that Q depends on θ of
+both faces by a sparse matrix. The points themselves only carry values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import scipy.sparse as sp
+from scipy.linalg.lapack import dgetrf, dgetrs
+
+from ...errors import ComputationError
+from ...parallel import sum_over_ranks
+from .exchange_matrix import (
+    Division,
+    coupling_matrix,
+    divided,
+    jump_scale,
+    scaled_functions,
+)
+from .face_nodes import FaceNodes
+from .heat import NO_HEAT_SINK, BaselineResponse, ThermalState
+from .pressure import Basis
+
+
+@dataclass(frozen=True)
+class FaceHeat:
+    """Heat at the contact points, and its exchange between the faces.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (n,)
+        Areas of the points [m²].
+    basis : ndarray or csr_array, shape (n, m)
+        Basis Ψ of the exchanged heat in perfect contact.
+    traces : tuple of csr_matrix, shape (n_owned, n)
+        Transposed trace Eᵀ of each face.
+    shift : float
+        Heat transfer to a bath at ambient included in the factorised conduction on both faces, and
+        subtracted again here [W/(m² K)].
+    partition : float or ndarray, shape (n,)
+        Fraction of the friction heat released on body 1.
+    """
+
+    weights: np.ndarray
+    basis: Basis
+    traces: tuple[sp.csr_matrix, sp.csr_matrix]
+    shift: float
+    partition: float | np.ndarray
+
+    def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
+        """Nodal heat of the contact [W], owned rows; heat of the bath included on request."""
+        shift = self.shift if bath else 0.0
+        first, second = (
+            trace @ (self.weights * (flux + shift * rise))
+            for trace, rise, flux in zip(self.traces, state.rise, state.flux, strict=True)
+        )
+        return first + second
+
+    def divided(self, conductance: np.ndarray) -> Division:
+        """Divide conductances (n,) into parts that are finite and well scaled."""
+        return divided(conductance, self.shift * self.basis.shape[1])
+
+
+@dataclass(frozen=True)
+class InterfaceHeat(FaceHeat):
+    """Heat conduction in both bodies, condensed to the nodes of their faces.
+
+    Attributes
+    ----------
+    nodes : tuple of FaceNodes
+    response : tuple of ndarray, shape (n_f, n_f)
+        Φ: nodal rise per nodal heat on each face, the bath included [K/W].
+    symmetric : bool
+        True if these are symmetric.
+    """
+
+    nodes: tuple[FaceNodes, FaceNodes]
+    response: tuple[np.ndarray, np.ndarray]
+    symmetric: bool
+
+    def exchange(self, conductance: np.ndarray) -> HeatExchange:
+        """Couple the faces by a conductance (n,), infinite in perfect contact, see `divided`."""
+        return HeatExchange(self, conductance)
+
+    @property
+    def values(self) -> tuple[sp.csr_array, sp.csr_array]:
+        """Temperatures of both faces at the points per nodal value, shape (n, n_f)."""
+        return self.nodes[0].values, self.nodes[1].values
+
+    @cached_property
+    def functions(self) -> sp.csr_array:
+        """The basis Ψ as a sparse matrix, shape (n, m)."""
+        return sp.csr_array(self.basis)
+
+    @cached_property
+    def released(self) -> sp.csr_array:
+        """Nodal heat into both faces per friction heat at the points, (n_f1 + n_f2, n) [m²]."""
+        f = self.partition * np.ones(len(self.weights))
+        shares = zip(self.values, (f, 1 - f), strict=True)
+        parts = [values.T @ sp.diags_array(self.weights * share) for values, share in shares]
+        return sp.vstack(parts).tocsr()
+
+    def on_nodes(self, heat: np.ndarray) -> np.ndarray:
+        """Owned nodal heat (n_owned, k) of the bodies from that on both faces (n_f1 + …, k)."""
+        n_owned, (one, two) = self.traces[0].shape[0], self.nodes
+        first, second = heat[: one.count], heat[one.count : one.count + two.count]
+        return one.spread(first, n_owned) + two.spread(second, n_owned)
+
+
+class HeatExchange:
+    """Faces coupled by a conductance.
+
+    The unknowns are the nodal rises of both faces by the heat at the contact, and coefficients of
+    the heat that crosses beyond the direct part, see `exchange_matrix.divided`::
+
+        x = (θ1, θ2, z),   Q = b + N x,   θ = Φ Q,   0 = b_z + (N x)_z,   x = G b
+
+    Parameters
+    ----------
+    face : InterfaceHeat
+    conductance : ndarray, shape (n,)
+        Infinite in perfect contact [W/(m² K)].
+
+    Raises
+    ------
+    ComputationError
+        If a heated body has no heat sink.
+    """
+
+    def __init__(self, face: InterfaceHeat, conductance: np.ndarray):
+        self.face, self.division = face, face.divided(conductance)
+        self._splits = np.cumsum([nodes.count for nodes in face.nodes])
+        self._set_up()
+
+    def _set_up(self) -> None:
+        """Scale the functions of crossing heat, and factorise."""
+        face = self.face
+        self.scale = jump_scale(
+            face.weights, face.functions, face.values, face.response, self.division
+        )
+        functions = scaled_functions(face.functions, self.scale)
+        self.coupling = coupling_matrix(
+            face.weights, functions, face.values, self.division, face.shift
+        )
+        self._factor = _factorised(self._matrix())
+
+    @cached_property
+    def _crossing(self) -> sp.csr_array:
+        """Scaled functions ``η Ψ`` of the heat that crosses beyond the direct part, (n, n_z)."""
+        functions = scaled_functions(self.face.functions, self.scale)
+        return (sp.diags_array(self.division[1]) @ functions).tocsr()
+
+    def state(self, friction_heat: np.ndarray, baseline: BaselineResponse) -> ThermalState:
+        """Temperatures and fluxes due to friction heat [W/m²] at the points, shape (n,)."""
+        changes, crossing = self.solved(friction_heat, baseline)
+        (T1, T2), f = baseline.rise, self.face.partition
+        return ThermalState(
+            (T1 + changes[0], T2 + changes[1]),
+            (f * friction_heat + crossing, (1 - f) * friction_heat - crossing),
+        )
+
+    def opened(self, per_heat: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+        """Functionals (weak gaps, say) per load, from those per nodal heat of each face, (k, n_f).
+
+        Shape (k, n_f1 + n_f2 + n_z), see `loads`.
+        """
+        own = np.hstack([*per_heat, np.zeros((len(per_heat[0]), self._crossing.shape[1]))])
+        return own + self.transposed_response(self.coupling.T @ own.T).T
+
+    def loads(self, friction_heat, baseline: BaselineResponse | None = None):
+        """Loads of the coupled faces: nodal heat [W], then weak temperature jumps; by columns.
+
+        Parameters
+        ----------
+        friction_heat : ndarray or csr_array, shape (n,) or (n, k)
+            [W/m²]
+        baseline : BaselineResponse, optional
+            Rises without heat at the contact.
+        """
+        loads = self.face.released @ friction_heat
+        jumps = self._crossing.shape[1], *friction_heat.shape[1:]
+        if sp.issparse(loads):
+            return sp.vstack([loads, sp.csr_array(jumps)]).tocsr()
+        loads = np.concatenate([loads, np.zeros(jumps)])
+        if baseline is None:
+            return loads
+        (T1, T2), face = baseline.rise, self.face
+        w, s, across = face.weights, face.shift, self.division[0] * (T2 - T1)
+        one, two = (values.T for values in face.values)
+        heat = one @ (w * (s * T1 + across)), two @ (w * (s * T2 - across))
+        return loads + np.concatenate([*heat, self._crossing.T @ (w * (T1 - T2))])
+
+    def solved(self, friction_heat: np.ndarray, baseline: BaselineResponse | None = None):
+        """Changes of the rises of both faces at the points, and heat from body 2 to body 1."""
+        θ1, θ2, z = self._parts(self.response(self.loads(friction_heat, baseline)))
+        one, two = self.face.values
+        changes = one @ θ1, two @ θ2
+        difference = changes[1] - changes[0]
+        if baseline is not None:
+            difference = difference + baseline.rise[1] - baseline.rise[0]
+        return changes, (self.division[0] * difference.T).T + self._crossing @ z
+
+    def response(self, loads: np.ndarray) -> np.ndarray:
+        """Unknowns ``x = G b`` by loads b, by columns."""
+        (first, second, jump), (Φ1, Φ2) = self._parts(loads), self.face.response
+        found, _ = dgetrs(*self._factor, np.concatenate([Φ1 @ first, Φ2 @ second, jump]))
+        return found.reshape(loads.shape)
+
+    def transposed_response(self, values: np.ndarray) -> np.ndarray:
+        """Products ``Gᵀ values``, by columns."""
+        if self.face.symmetric:
+            return self.response(values)
+        first, second, jump = self._parts(dgetrs(*self._factor, values, trans=1)[0])
+        Φ1, Φ2 = self.face.response
+        return np.concatenate([Φ1.T @ first, Φ2.T @ second, jump])
+
+    def _parts(self, values):
+        """Rows of both faces and of the jumps."""
+        start, end = self._splits
+        return values[:start], values[start:end], values[end:]
+
+    def _matrix(self) -> np.ndarray:
+        """Matrix of the unknowns: ``I - Φ N``, and ``-N`` in the rows of the jumps."""
+        first, second, jump = self._parts(self.coupling)
+        matrix = np.empty(self.coupling.shape, order="F")
+        start, end = self._splits
+        Φ1, Φ2 = self.face.response
+        matrix[:start], matrix[start:end] = -(Φ1 @ first), -(Φ2 @ second)
+        matrix[end:] = -jump.toarray()
+        matrix[np.arange(end), np.arange(end)] += 1.0
+        return matrix
+
+
+def _factorised(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Triangular factors of a matrix (overwritten) with pivots."""
+    factor, pivots, singular = dgetrf(matrix, overwrite_a=1)
+    if singular:
+        raise ComputationError(NO_HEAT_SINK)
+    return factor, pivots
+
+
+@dataclass(frozen=True)
+class CoupledDistortion:
+    """Thermal distortion of faces that exchange heat.
+
+    Attributes
+    ----------
+    exchange : HeatExchange
+    per_load : ndarray, shape (m, n_f1 + n_f2 + n_z)
+        Weak gap per load of the exchange, or of its reference.
+    change : tuple of ndarray or None, shape (m, k) and (k, n_f1 + n_f2 + n_z)
+        Factors of the difference from the reference.
+    """
+
+    exchange: HeatExchange
+    per_load: np.ndarray
+    change: tuple[np.ndarray, np.ndarray] | None = None
+
+    def by_friction(self, friction_heat) -> np.ndarray:
+        """Weak gap by friction heat (n,) or columns of it, also sparse, shape (m, k) [m³]."""
+        return self._weak(self.exchange.loads(friction_heat))
+
+    def baseline_gap(self, baseline: BaselineResponse) -> np.ndarray:
+        """Weak gap without friction heat, shape (m,)."""
+        assert baseline.opening is not None
+        still = np.zeros(len(baseline.rise[0]))
+        return self._weak(self.exchange.loads(still, baseline)) + baseline.opening
+
+    def _weak(self, loads) -> np.ndarray:
+        result = self.per_load @ loads
+        if self.change is None:
+            return result
+        first, second = self.change
+        return result + first @ (second @ loads)
+
+
+def baseline_response(
+    rise: np.ndarray, traces: tuple[sp.csr_matrix, sp.csr_matrix], comm, opening=None
+) -> BaselineResponse:
+    """Response of the faces to a nodal rise (n_owned,), with the weak gap opened by it."""
+    T1, T2 = (sum_over_ranks(comm, trace.T @ rise) for trace in traces)
+    return BaselineResponse((T1, T2), opening)
+
+
+def opened_by(per_rise: Sequence[np.ndarray], rises: Sequence[np.ndarray], comm) -> np.ndarray:
+    """Weak gap (m,) opened by nodal rises (n_owned,), each with its gap per rise (n_owned, m)."""
+    pairs = zip(per_rise, rises, strict=False)
+    return sum_over_ranks(comm, sum(response.T @ rise for response, rise in pairs))

@@ -54,21 +54,33 @@ def hertz_sphere_3d_fine() -> Iterator[Check]:
 def hertz_elliptical() -> Iterator[Check]:
     """Quarter of two cylinders of different radii that cross at right angles."""
     exact = elliptical_contact(FORCE, (CYLINDERS[0] * 1e-3, CYLINDERS[1] * 1e-3), MODULUS)
-    yield from _against(exact, _computed(crossed_cylinders(*CYLINDERS), exact, COARSE), 1e-2)
+    yield from _against(exact, pressed(crossed_cylinders(*CYLINDERS), exact, COARSE), 1e-2)
 
 
 def _sphere(sizes: tuple[float, float], allowed: float) -> Iterator[Check]:
     radius = BALL * 1e-3
     exact = elliptical_contact(FORCE, (radius, radius), MODULUS)
-    result = _computed(sphere_on_block(BALL, BLOCK), exact, sizes)
+    result = pressed(sphere_on_block(BALL, BLOCK), exact, sizes)
     yield from _against(exact, result, allowed)
     finite = sphere_on_half_space(FORCE, radius, STEEL, STEEL).peak
     peak = result.summary["max_pressure_Pa"]
     yield compare("peak pressure of a sphere of finite size [Pa]", peak, finite, allowed, LURE)
 
 
-def _computed(pair: QuarterPair, exact: EllipticalContact, sizes: tuple[float, float]) -> Result:
-    """Contact of two bodies meshed for the expected contact."""
+def pressed(
+    pair: QuarterPair, exact: EllipticalContact, sizes: tuple[float, float], **contact
+) -> Result:
+    """Contact of two bodies meshed for the expected contact.
+
+    Parameters
+    ----------
+    pair : QuarterPair
+    exact : EllipticalContact
+    sizes : tuple of float
+        Element sizes in the contact and at its edge, by its smaller half-axis.
+    **contact
+        Keys of the table ``contact``.
+    """
     a, b = (1e3 * axis for axis in exact.half_axes)
     with tempfile.TemporaryDirectory() as folder:
         path = write_pair(Path(folder, "pair.msh"), pair, MeshSizes((a, b), *sizes))
@@ -81,6 +93,7 @@ def _computed(pair: QuarterPair, exact: EllipticalContact, sizes: tuple[float, f
             "mesh": {"degree": 2},
             "bodies": {"upper": steel, "lower": {"like": "upper"}},
             "load": {"force": f"{FORCE / 4} N"},
+            "contact": contact,
             "analysis": {"type": "initial"},
         }
         return computed(load(tables))

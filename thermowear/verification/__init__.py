@@ -17,6 +17,7 @@ from .cases.instability import half_plane_instability, sliding_rod
 from .cases.minimality import minimality
 from .cases.moving_band import moving_band
 from .cases.patch_in_space import patch_3d
+from .cases.pin_on_disk_in_space import pin_on_disk_3d
 from .cases.reciprocating import reciprocating
 from .cases.ring_in_space import ring_3d, ring_3d_whole
 from .cases.special_cases import SPECIAL_CASES
@@ -30,7 +31,7 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     deep_wear, beam_shakedown, fretting_wear, fretting_cylinder, fuel_fretting,
     reciprocating, moving_band, two_slabs, pressure_conductance, temperature_dependent,
     minimality, step_flux, braking_stop, sliding_rod, half_plane_instability, optimal_shape,
-    ring_3d, ring_3d_whole,
+    ring_3d, ring_3d_whole, pin_on_disk_3d,
 ), ())  # fmt: skip
 CASES = {
     id: identified(id, case, *runs)

@@ -1,11 +1,13 @@
 """Steady state of large hot bodies in space by multigrid: time by phase, iterations, memory.
 
-    python3 -m tests.benchmarks.large_steady [--sizes 60 150 400 1000] [--solver auto]
-        [--conductance 2e4 | perfect] [--cells tetrahedron]
+    python3 -m tests.benchmarks.large_steady [--model blocks | brake] [--sizes 60 150 400 1000 4000]
+        [--solver auto] [--conductance 2e4 | perfect] [--cells tetrahedron]
 
-A block of friction material slides on a metal block: quadratic tetrahedra whose faces do not match
-unless ``--matching`` is given. Each size (thousands of displacement unknowns) runs in a process of
-its own, so that the largest memory is that of the size.
+``blocks``: a block of friction material slides on a metal block: quadratic tetrahedra whose faces do
+not match unless ``--matching`` is given. ``brake``: a pad with back plate on half of a turning disk
+with hat, which carries the heat along (starter ``disk-brake-3d``); ``--peclet`` is ``v L/κ`` with the
+length L of the pad. Each size (thousands of displacement unknowns) runs in a process of its own, so
+that the largest memory is that of the size.
 """
 
 from __future__ import annotations
@@ -17,6 +19,11 @@ import resource
 import subprocess
 import sys
 import time
+
+import numpy as np
+
+BRAKE_UNKNOWNS = {8: 32, 16: 64, 24: 149, 32: 260, 48: 628, 64: 1171, 80: 2058, 104: 4000}
+"""Thousands of displacement unknowns of pad and half a disk by ``mesh.elements``."""
 
 
 def divisions(thousands: float, matching: bool) -> tuple:
@@ -30,6 +37,34 @@ def divisions(thousands: float, matching: bool) -> tuple:
     return tuple(map(tuple, counts))
 
 
+def blocks(thousands: float, options: argparse.Namespace):
+    """Model of two blocks."""
+    from ..simulation.hot_solids import BlockMeshes, hot_blocks
+
+    conductance = None if options.conductance == "perfect" else float(options.conductance)
+    meshes = BlockMeshes(divisions(thousands, options.matching), cell_type=options.cells)
+    return hot_blocks(meshes, options.solver, conductance)
+
+
+def brake(thousands: float, options: argparse.Namespace):
+    """Model of a pad on half of a disk."""
+    import thermowear as tw
+    from thermowear.simulation.from_case.model import model_of
+
+    from ..simulation.turning_disk import turning_case
+
+    conductance = None if options.conductance == "perfect" else f"{options.conductance} W/(m^2 K)"
+    changes = {"mesh.solver": options.solver, "heat.conductance": conductance}
+    elements = elements_along_pad(thousands)
+    return model_of(tw.load(turning_case(options.peclet, elements, **changes)))
+
+
+def elements_along_pad(thousands: float) -> int:
+    """Number of elements along the pad for a number of unknowns."""
+    sizes = np.log(list(BRAKE_UNKNOWNS.values())), np.log(list(BRAKE_UNKNOWNS))
+    return round(float(np.exp(np.interp(np.log(thousands), *sizes))))
+
+
 def measured(thousands: float, options: argparse.Namespace) -> dict:
     """Run one size in this process."""
     from thermowear.model import StaticAnalysis
@@ -38,8 +73,6 @@ def measured(thousands: float, options: argparse.Namespace) -> dict:
     from thermowear.simulation.runtime.observer import Observer
     from thermowear.timer import Phases
 
-    from ..simulation.hot_solids import BlockMeshes, hot_blocks
-
     class Console(Observer):
         def note(self, text):
             print("note:", text, file=sys.stderr)
@@ -47,9 +80,7 @@ def measured(thousands: float, options: argparse.Namespace) -> dict:
         def phase(self, name):
             print(f"{largest():6.2f} GB  {name}", file=sys.stderr)
 
-    conductance = None if options.conductance == "perfect" else float(options.conductance)
-    meshes = BlockMeshes(divisions(thousands, options.matching), cell_type=options.cells)
-    model = hot_blocks(meshes, options.solver, conductance)
+    model = {"blocks": blocks, "brake": brake}[options.model](thousands, options)
     analysis, observer, since = StaticAnalysis("steady"), Console(), time.perf_counter()
     phases = Phases(observer.phase)
     from mpi4py import MPI
@@ -64,6 +95,7 @@ def measured(thousands: float, options: argparse.Namespace) -> dict:
         "contact_points",
         "max_temperature_K",
         "shape_range_m",
+        "max_cell_peclet_number",
         "heat_balance_relative_error",
         "equilibrium_relative_error",
         "solver",
@@ -83,6 +115,8 @@ def largest() -> float:
 def main() -> None:
     """Run all sizes and print a table with growth exponents."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--model", choices=("blocks", "brake"), default="blocks")
+    parser.add_argument("--peclet", type=float, default=1e4)
     parser.add_argument("--sizes", type=float, nargs="+", default=[60, 150, 400, 1000])
     parser.add_argument("--solver", default="auto")
     parser.add_argument("--conductance", default="2e4")

@@ -22,6 +22,7 @@ SLIPS = [
     (HERTZ, {"geometry.thickness": "1e-320 mm"}, "geometry.thickness"),
     (PUNCH, {"geometry.edge_radius": "1e300 m"}, "geometry.edge_radius"),
     ("disk-sector", {"geometry.disk_thickness": "1e-10 mm"}, "geometry.disk_thickness"),
+    ("disk-brake-3d", {"geometry.chamfer_depth": "1e-10 mm"}, "geometry.chamfer_depth"),
 ]
 
 
@@ -61,6 +62,7 @@ LARGE = [
     (STEADY, {"mesh.elements": 400, "mesh.degree": 10}, "million nodes"),
     (HERTZ, {"geometry.block_height": "30 km"}, "cells in one body"),
     ("disk-sector", {"mesh.elements": 300}, "cells in one body"),
+    ("disk-brake-3d", {"mesh.elements": 400}, "cells in one body"),
     ("rectangular-punch", {"geometry.block_x": "10 km"}, "cells in one body"),
 ]
 

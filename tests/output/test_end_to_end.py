@@ -51,6 +51,7 @@ QUICK = {
     "annular-punch-deep": ("mesh.elements=2", "mesh.degree=2")
     + ("analysis.end_time=20 h", 'analysis.output_times=["10 h"]'),
     "disk-sector": ("mesh.degree=2", "mesh.elements=4"),
+    "disk-brake-3d": ("mesh.degree=2", "mesh.elements=4"),
     "rectangular-punch": ("mesh.degree=2", "mesh.elements=4"),
     "pin-on-disk": ("mesh.degree=2", "mesh.elements=4"),
     "pin-on-disk-ball": ("mesh.degree=2", "mesh.elements=4"),

@@ -18,7 +18,7 @@ MEAN = (INNER + OUTER) / 2
 LENGTH = ANGLE * MEAN
 
 
-def turning(peclet, elements=6, advection="resolved", **changes):
+def turning_case(peclet, elements=6, advection="resolved", **changes):
     """Half of the disk of the starter at ``Pe = v L/κ``, L the length of the pad at mean radius."""
     speed = peclet * CONDUCTIVITY / CAPACITY / LENGTH
     case = {
@@ -31,7 +31,12 @@ def turning(peclet, elements=6, advection="resolved", **changes):
         "heat.advection": advection,
         "wear.disk": None,
     }
-    return tw.run(tw.load(changed(changed(tables("disk-brake-3d"), case), changes)))
+    return changed(changed(tables("disk-brake-3d"), case), changes)
+
+
+def turning(peclet, elements=6, advection="resolved", **changes):
+    """Results of `turning_case`."""
+    return tw.run(tw.load(turning_case(peclet, elements, advection, **changes)))
 
 
 def disk(result) -> tuple[np.ndarray, np.ndarray]:

@@ -135,7 +135,9 @@ class DiskBrakeInSpace(Geometry):
         outline, (first, last) = self.outline, self.outline.straight
         if not (first < last and max(outline.corner_angles) < outline.half_angle):
             raise KeyFault(
-                "pad_corner_radius", f"{outline.corner:g} m is too large for the sides of the pad"
+                "pad_corner_radius",
+                f"{outline.corner:g} m must be less than about half of the sides of the pad, "
+                f"{outline.width:g} m wide and {outline.inner * self.pad_angle:.3g} m long inside",
             )
         self._check_chamfers()
         middle = (outline.inner + outline.outer) / 2

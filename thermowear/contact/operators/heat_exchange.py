@@ -233,8 +233,10 @@ class HeatExchange:
         matrix = np.empty(self.coupling.shape, order="F")
         start, end = self._splits
         Φ1, Φ2 = self.face.response
-        matrix[:start], matrix[start:end] = -(Φ1 @ first), -(Φ2 @ second)
-        matrix[end:] = -jump.toarray()
+        matrix[:start] = Φ1 @ first
+        matrix[start:end] = Φ2 @ second
+        matrix[end:] = jump.toarray()
+        np.negative(matrix, out=matrix)
         matrix[np.arange(end), np.arange(end)] += 1.0
         return matrix
 

@@ -65,3 +65,29 @@ def _leaving_row(tableau, basis, entering: int, n: int, cover: int) -> int | Non
         return int(out[0])
     keys = tableau[rows, :n] / column[rows, None]
     return int(rows[np.lexsort(keys.T[::-1])[0]])
+
+
+def with_motion(
+    compliance: np.ndarray,
+    modes: np.ndarray,
+    force_modes: np.ndarray,
+    gap: np.ndarray,
+    load: np.ndarray,
+) -> np.ndarray | None:
+    """Coefficients λ (m,) of contact with a rigid motion of the holder, see `signorini`; scaled.
+
+    The motion is a difference of nonnegative variables. None if there is no solution.
+    """
+    m, k = modes.shape
+    size = 1 / np.sqrt(np.abs(np.diag(compliance)))
+    # orthonormal modes: given ones may be nearly parallel (tilt about a far pivot)
+    border, _ = np.linalg.qr(modes * size[:, None])
+    rows, mixing = np.linalg.qr(force_modes * size[:, None])
+    force = np.linalg.solve(mixing.T, load)
+    matrix = np.zeros((m + 2 * k, m + 2 * k))
+    matrix[:m, :m] = compliance * np.outer(size, size)
+    matrix[:m, m:] = np.hstack([-border, border])
+    matrix[m:, :m] = np.vstack([rows.T, -rows.T])
+    right = np.concatenate([gap * size, -force, force])
+    solution = lemke(matrix, right / np.abs(right).max())
+    return None if solution is None else solution[:m]

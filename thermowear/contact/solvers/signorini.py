@@ -15,10 +15,11 @@ from functools import partial
 from typing import TypeVar
 
 import numpy as np
+from scipy.linalg.lapack import dgetrf, dgetrs
 
 from ...errors import ComputationError
 from ...serialise import serialisable
-from .lemke import lemke
+from .lemke import with_motion
 
 _TOLERANCE = 1e-9
 _MAX_SETS = 1000
@@ -54,6 +55,7 @@ def solve_contact(
     load: np.ndarray,
     start: np.ndarray | None = None,
     force_modes: np.ndarray | None = None,
+    factors: SaddleFactors | None = None,
 ) -> SignoriniSolution:
     """Solve by a primal-dual active set, and by Lemke's method if that cycles.
 
@@ -71,6 +73,8 @@ def solve_contact(
         Predicted active coefficients.
     force_modes : ndarray, shape (m, k), optional
         T, by default R.
+    factors : SaddleFactors, optional
+        Factors of earlier problems, reused for the same arrays A, R and T.
 
     Returns
     -------
@@ -86,7 +90,7 @@ def solve_contact(
     # relative to nearly closed faces: a far start would lose the digits of the deflection
     origin = np.linalg.lstsq(modes, gap, rcond=None)[0]
     forces = modes if force_modes is None else force_modes
-    problem = _Problem(compliance, gap - modes @ origin, modes, load, forces)
+    problem = _Problem(compliance, gap - modes @ origin, modes, load, forces, factors)
     solution = _solve(problem, start)
     return replace(solution, motion=solution.motion + origin)
 
@@ -113,6 +117,7 @@ class _Problem:
     modes: np.ndarray
     load: np.ndarray
     force_modes: np.ndarray
+    factors: SaddleFactors | None = None
 
     def residual(self, solution: SignoriniSolution) -> np.ndarray:
         return self.compliance @ solution.coefficients + self.gap - self.modes @ solution.motion
@@ -155,18 +160,58 @@ def _with_active(problem: _Problem, active: np.ndarray) -> SignoriniSolution | N
     count = int(active.sum())
     if count < len(problem.load):
         return None
-    found = saddle_point(
-        problem.compliance[np.ix_(active, active)],
-        problem.modes[active],
-        problem.force_modes[active],
-        problem.gap[active, None],
-        problem.load[:, None],
-    )
-    if found is None:
+    matrices = problem.compliance, problem.modes, problem.force_modes
+    factor = (problem.factors or SaddleFactors(0)).of(active, *matrices)
+    if factor is None:
         return None
+    found = factor.solve(problem.gap[active], problem.load)
     coefficients = np.zeros(len(problem.gap))
-    coefficients[active] = found[:count, 0]
-    return SignoriniSolution(coefficients, found[count:, 0], active)
+    coefficients[active] = found[:count]
+    return SignoriniSolution(coefficients, found[count:], active)
+
+
+class SaddlePoint:
+    """Factorised problem ``A λ - R d = -g, Tᵀ λ = F``, scaled by the diagonal of A.
+
+    Parameters as in `saddle_point`, of a single problem.
+    """
+
+    def __init__(self, compliance: np.ndarray, modes: np.ndarray, force_modes: np.ndarray):
+        matrix, self._scale = _scaled_matrix(compliance, modes, force_modes)
+        self.singular = 0
+        if matrix.size:  # nothing presses, and nothing moves
+            matrix = np.asfortranarray(matrix)
+            self._factor, self._pivots, self.singular = dgetrf(matrix, overwrite_a=1)
+
+    def solve(self, gap: np.ndarray, load: np.ndarray) -> np.ndarray:
+        """λ, then d, for one gap (m,) and load (k,)."""
+        right, scale = -np.concatenate([gap, load]), self._scale[:, 0]
+        if not right.size:
+            return right
+        return dgetrs(self._factor, self._pivots, right / scale)[0].ravel() / scale
+
+
+class SaddleFactors:
+    """Factors of a number of last problems, by compliance, modes and active set."""
+
+    def __init__(self, kept: int):
+        self._kept = kept
+        self._known: list[tuple[tuple, np.ndarray, SaddlePoint]] = []
+
+    def of(self, active: np.ndarray, *matrices: np.ndarray) -> SaddlePoint | None:
+        """Factor for the active coefficients of given matrices A, R and T; None if singular."""
+        for known, chosen, factor in self._known:
+            same = all(one is two for one, two in zip(known, matrices, strict=True))
+            if same and np.array_equal(chosen, active):
+                return factor
+        compliance, modes, force_modes = matrices
+        reduced = compliance if active.all() else compliance[np.ix_(active, active)]
+        factor = SaddlePoint(reduced, modes[active], force_modes[active])
+        if factor.singular:
+            return None
+        if self._kept:
+            self._known = [*self._known[1 - self._kept :], (matrices, active, factor)]
+        return factor
 
 
 def saddle_point(
@@ -191,6 +236,17 @@ def saddle_point(
     ndarray, shape (..., m + k, r)
         λ, then d.
     """
+    matrix, scale = _scaled_matrix(compliance, modes, force_modes)
+    try:
+        return np.linalg.solve(matrix, -np.concatenate([gap, load], axis=-2) / scale) / scale
+    except np.linalg.LinAlgError:
+        return None
+
+
+def _scaled_matrix(
+    compliance: np.ndarray, modes: np.ndarray, force_modes: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Scaled matrix (..., m + k, m + k) of a saddle-point problem, with its scales (.., 1)."""
     m, k = modes.shape[-2:]
     size = np.sqrt(np.abs(np.diagonal(compliance, axis1=-2, axis2=-1)))[..., None]
     border, rows = modes / size, force_modes / size
@@ -200,11 +256,7 @@ def saddle_point(
     matrix[..., :m, :m] = compliance / size / size.mT
     matrix[..., :m, m:] = -border / stretch
     matrix[..., m:, :m] = -(rows / stretch).mT
-    scale = np.concatenate([size, stretch.mT], axis=-2)
-    try:
-        return np.linalg.solve(matrix, -np.concatenate([gap, load], axis=-2) / scale) / scale
-    except np.linalg.LinAlgError:
-        return None
+    return matrix, np.concatenate([size, stretch.mT], axis=-2)
 
 
 def _pressing(problem: _Problem, solution: SignoriniSolution) -> np.ndarray:
@@ -237,19 +289,9 @@ def _verified(problem: _Problem, solution: SignoriniSolution) -> SignoriniSoluti
 
 
 def _pressing_by_lemke(problem: _Problem) -> np.ndarray:
-    """Active set by Lemke's method; the rigid motion is a difference of nonnegative variables."""
-    m, k = problem.modes.shape
-    size = 1 / np.sqrt(np.abs(np.diag(problem.compliance)))
-    # orthonormal modes: given ones may be nearly parallel (tilt about a far pivot)
-    border, _ = np.linalg.qr(problem.modes * size[:, None])
-    rows, mixing = np.linalg.qr(problem.force_modes * size[:, None])
-    force = np.linalg.solve(mixing.T, problem.load)
-    matrix = np.zeros((m + 2 * k, m + 2 * k))
-    matrix[:m, :m] = problem.compliance * np.outer(size, size)
-    matrix[:m, m:] = np.hstack([-border, border])
-    matrix[m:, :m] = np.vstack([rows.T, -rows.T])
-    right = np.concatenate([problem.gap * size, -force, force])
-    solution = lemke(matrix, right / np.abs(right).max())
-    if solution is None:
+    """Active set by Lemke's method."""
+    matrices = problem.compliance, problem.modes, problem.force_modes
+    coefficients = with_motion(*matrices, problem.gap, problem.load)
+    if coefficients is None:
         raise NoEquilibrium("contact: no equilibrium found")
-    return solution[:m] > 1e-12 * solution[:m].max()
+    return coefficients > 1e-12 * coefficients.max()

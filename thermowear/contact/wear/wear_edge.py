@@ -193,7 +193,8 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     share = (~points @ contact.weighted) / contact.weighted.sum(axis=0)
     cut = (share > _ZERO) & (share < 1.0 - _ZERO)
     whole = np.flatnonzero(share >= 1.0 - _ZERO)
-    single = np.eye(len(points))[:, points]
+    single = np.zeros((len(points), np.count_nonzero(points)))
+    single[points] = np.eye(single.shape[1])
     split = np.hstack([np.where(points[:, None], 0.0, dense(contact.basis[:, cut])), single])
     projection = contact.projected(split)
     left = split - contact.basis @ projection

@@ -40,6 +40,8 @@ from .enriched_bodies import EnrichedBodies, TemperatureChange, temperature_chan
 _FOLLOWING = 1.5
 """Ratio of the change by all higher degrees to that by the next one: 1 + 1/3 + 1/9 …"""
 WORTH_A_WARNING = 0.05
+_PART = 0.2
+"""Part of the available memory that the estimate may take in space."""
 _FLAT = 1e-9
 """Range of a shape at rounding level, relative to the elastic deflection."""
 
@@ -102,6 +104,9 @@ def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
     if not end.interface.pressure.any():
         missing["pressure"] = "nothing presses"
         return ErrorEstimates(errors, missing)
+    if not steady and _enriched_memory(system) > _PART * system.choice.available:
+        missing["pressure"] = "not estimated for this many contact points"
+        return ErrorEstimates(errors, missing)
     try:
         if steady:
             enriched = _finer_principle(system, end.contact)
@@ -113,6 +118,12 @@ def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
     except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
         missing["pressure"] = str(error)
     return ErrorEstimates(errors, missing)
+
+
+def _enriched_memory(system: System) -> float:
+    """Memory of `enriched_pressure`, whose finer space has four times the functions [bytes]."""
+    points, functions = system.basis.shape
+    return 8.0 * points * functions * (2 + 3 * 4)
 
 
 def _temperature_change(end: Snapshot) -> tuple[TemperatureChange | None, str | None]:

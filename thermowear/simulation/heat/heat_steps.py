@@ -20,7 +20,7 @@ from ...contact.operators.heat_exchange import (
     opened_by,
 )
 from ...contact.operators.pressure import scaled
-from ...contact.operators.thermal_opening import ThermalOpening
+from ...contact.operators.thermal_opening import ThermalDistortion
 from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions
@@ -128,14 +128,10 @@ class HeatOperators:
 
     def opened(self, rises: list[np.ndarray]) -> np.ndarray:
         """Weak gap opened by nodal rises, see `ThermalOpening.of`; every rank calls."""
-        opening = self._opening
+        opening = self._system.thermal_opening
         if opening.per_rise:
             return opened_by(opening.per_rise, rises, self._system.comm)
         return opening.of(rises)
-
-    @cached_property
-    def _opening(self) -> ThermalOpening:
-        return self._system.thermal_opening
 
     def known(self, conductance: np.ndarray) -> KnownExchange:
         """Heat exchange of the faces for conductances at the points (n,), and its distortion."""
@@ -149,9 +145,12 @@ class HeatOperators:
         """Distortion of faces that exchange heat by conductances at the points, shape (n,)."""
         known = self.known(conductance)
         if known.distortion is None:
-            uncoupled = thermal_distortion(self._system, self.conduction, self.face, self.slopes)
-            known.distortion = self._exchanges.distortion(known, uncoupled)
+            known.distortion = self._exchanges.distortion(known, self._uncoupled)
         return known.distortion
+
+    @cached_property
+    def _uncoupled(self) -> ThermalDistortion:
+        return thermal_distortion(self._system, self.conduction, self.face, self.slopes)
 
     def compliance(self, conductance: np.ndarray, heating: np.ndarray, basis: np.ndarray):
         """Thermal compliance ``H diag(mu v) Ψ`` for a heating ``mu v`` (n,) [m/s], (m, m)."""

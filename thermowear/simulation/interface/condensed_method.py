@@ -7,7 +7,12 @@ from dataclasses import replace
 import numpy as np
 
 from ...contact.operators.condensation import CondensedContact
-from ...contact.solvers.signorini import NoEquilibrium, SignoriniSolution, solve_contact
+from ...contact.solvers.signorini import (
+    NoEquilibrium,
+    SaddleFactors,
+    SignoriniSolution,
+    solve_contact,
+)
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
 from ...errors import ComputationError
@@ -15,6 +20,8 @@ from ..system.system import System
 from .contact_solver import ContactSolution
 
 _ITERATIONS = 60
+_KEPT = 8
+"""Number of compliances and factors kept: of the stages of a step and its halves."""
 _HOT = (
     "with friction heat this happens beyond the critical sliding speed (thermoelastic "
     "instability): reduce the speed, or the expansion, or the friction"
@@ -27,6 +34,25 @@ _TIPPED = (
     "the load lifts body 1 off or tips it over an edge: change the line of the load or the free "
     "motions of the holder"
 )
+
+
+class RecentSums:
+    """Sums of matrices; the last are cached.
+
+    The stages of a step of wear share their compliances, and so the factors of them.
+    """
+
+    def __init__(self) -> None:
+        self._known: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
+
+    def of(self, first: np.ndarray, second: np.ndarray) -> np.ndarray:
+        """Sum of two matrices."""
+        for one, two, total in self._known:
+            if one is first and two is second:
+                return total
+        total = first + second
+        self._known = [*self._known[1 - _KEPT :], (first, second, total)]
+        return total
 
 
 class CondensedMethod:
@@ -44,6 +70,7 @@ class CondensedMethod:
         self._free = system.holder.free
         self._given = system.holder.amplitudes(np.zeros(int(self._free.sum())))
         self._last_space: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None
+        self._sums, self._factors = RecentSums(), SaddleFactors(_KEPT)
         self._last_opening: tuple[CondensedContact | EdgeSpace, np.ndarray, np.ndarray] | None = (
             None
         )
@@ -68,7 +95,7 @@ class CondensedMethod:
             return self._solved(bodies, edge, compliance, thermal_gap, gap, slope, guess, load)
         for _ in range(_ITERATIONS):
             thermal, opening = heat.coupling(conditions, bodies.basis)
-            both = compliance + thermal
+            both = self._sums.of(compliance, thermal)
             guess = self._solved(bodies, edge, both, opening, gap, slope, guess, load)
             if heat.converged(conditions, guess.pressure):
                 return guess
@@ -161,12 +188,14 @@ class CondensedMethod:
             compliance, thermal_gap = edge.compliance(compliance), edge.projection.T @ thermal_gap
             start = None if guess is None else edge.pressing(guess.pressure)
         if slope.point.any():
-            compliance = compliance + self._opening_at_points(space, slope.point)
+            compliance = self._sums.of(compliance, self._opening_at_points(space, slope.point))
         if len(slope.rows):
             reach = space.weighted.T @ slope.reach
             compliance = compliance + reach @ (slope.rows @ space.basis)
         weak = space.weighted.T @ gap + thermal_gap
-        solution = solve_contact(compliance, weak, space.modes, load, start, space.force_modes)
+        solution = solve_contact(
+            compliance, weak, space.modes, load, start, space.force_modes, self._factors
+        )
         pressure = space.basis @ solution.coefficients
         apart = None
         if edge is not None:

@@ -41,10 +41,9 @@ class InterfaceProblem(WearProblem):
         self._condition_model = ConditionModel(system)
         self._last_conditions: tuple[bytes, InterfaceConditions] | None = None
         self._laws, self._spreads = list(system.laws.values()), list(system.spreads.values())
-        self._edge, gap = GrowingEdge(system, method), system.pairing.gap
-        self._gap, area = gap - system.holder.imposed, float(system.weights.sum())
-        n, self._rigid = len(gap), Slope.diagonal(np.zeros(len(gap)))
-        self._softness = np.full(n, system.softness)
+        self._edge, area = GrowingEdge(system, method), float(system.weights.sum())
+        self._gap, n = system.pairing.gap - system.holder.imposed, len(system.weights)
+        self._softness, self._rigid = np.full(n, system.softness), Slope.diagonal(np.zeros(n))
         self._unworn = np.zeros((len(self._laws), n))
         mean = (system.model.holder.force or area) / area
         self._guess = ContactSolution(np.full(n, mean), np.zeros(0), None)

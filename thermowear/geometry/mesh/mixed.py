@@ -84,6 +84,23 @@ def block_of(mesh: AnyMesh, *parts: str) -> TaggedMesh:
     return next((b for b in mesh.blocks if np.isin(b.cell_tags, tags).any()), mesh.blocks[0])
 
 
+def rows_of(mesh: AnyMesh, block: TaggedMesh) -> slice:
+    """Range of the points of a block among those of the mesh."""
+    counts = [len(each.points) for each in mesh.blocks]
+    before = sum(counts[: next(k for k, each in enumerate(mesh.blocks) if each is block)])
+    return slice(before, before + len(block.points))
+
+
+def placed(mesh: AnyMesh, points: np.ndarray) -> AnyMesh:
+    """Mesh with other coordinates of its points (n_points, gdim) [m]."""
+    return of_blocks([replace(block, points=points[rows_of(mesh, block)]) for block in mesh.blocks])
+
+
+def exchanged(mesh: AnyMesh, block: TaggedMesh, new: TaggedMesh) -> AnyMesh:
+    """Mesh with a new block in place of another one."""
+    return of_blocks([new if each is block else each for each in mesh.blocks])
+
+
 def joined(meshes: Sequence[TaggedMesh]) -> AnyMesh:
     """Mesh of bodies that were meshed one by one, body 1 first; all names differ.
 

@@ -163,27 +163,22 @@ def test_a_body_in_two_pieces(tmp_path):
 
 
 def test_linear_and_quadratic_mixed(tmp_path):
-    """requirement: two cell types within a body, and of both bodies, in one line."""
+    """requirement: two cell types within a body, in one line."""
     one, two = blocks(1), blocks(2)
     names = {name: np.array([i + 1, 3]) for i, name in enumerate(one.bodies)}
-    for split, expected in (
-        ((1, 2), "geometry.bodies: different cell types"),
-        ((1, 1), "geometry.bodies.upper: mixed cell types"),
-    ):
-        linear = one.cells[one.cell_tags == 1]
-        quadratic = two.cells[two.cell_tags == split[1]][len(linear) // 2 * (split[1] == 1) :]
-        cells = [("tetra", linear), ("tetra10", quadratic + len(one.points))]
-        cells += [("tetra10", two.cells[two.cell_tags == 2] + len(one.points))]
-        tags = [np.full(len(c), t) for (_, c), t in zip(cells, (*split, 2), strict=True)]
-        data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
-        points = np.concatenate([one.points, two.points])
-        mesh = meshio.Mesh(points, cells, cell_data=data, field_data=names)
-        meshio.write(tmp_path / "mesh.msh", mesh, file_format="gmsh22", binary=False)
-        with pytest.raises(CaseError) as error:
-            tw.load(file_tables(tmp_path / "mesh.msh", **NAMES)).tagged_mesh()
-        (line,) = error.value.faults
-        assert line.startswith(expected)
-        assert "tetrahedra of 4 nodes and tetrahedra of 10 nodes; only one type" in line
+    linear, quadratic = one.cells[one.cell_tags == 1], two.cells[two.cell_tags == 1]
+    cells = [("tetra", linear), ("tetra10", quadratic[len(linear) // 2 :] + len(one.points))]
+    cells += [("tetra10", two.cells[two.cell_tags == 2] + len(one.points))]
+    tags = [np.full(len(c), t) for (_, c), t in zip(cells, (1, 1, 2), strict=True)]
+    data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
+    points = np.concatenate([one.points, two.points])
+    mesh = meshio.Mesh(points, cells, cell_data=data, field_data=names)
+    meshio.write(tmp_path / "mesh.msh", mesh, file_format="gmsh22", binary=False)
+    with pytest.raises(CaseError) as error:
+        tw.load(file_tables(tmp_path / "mesh.msh", **NAMES)).tagged_mesh()
+    (line,) = error.value.faults
+    assert line.startswith("geometry.bodies.upper: mixed cell types")
+    assert "tetrahedra of 4 nodes and tetrahedra of 10 nodes; only one type" in line
 
 
 def test_prisms(tmp_path):

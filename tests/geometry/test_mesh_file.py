@@ -385,19 +385,18 @@ def test_cells_without_area(tmp_path):
 
 def test_mixed_cells(tmp_path):
     """
-    requirement: triangles among quadrilaterals are refused in one line.
+    requirement: triangles among the quadrilaterals of a body are refused in one line.
     """
     with gmsh_model("mixed") as gmsh:
-        for name, x in (("upper", 0), ("lower", 5)):
-            body = gmsh.model.occ.addRectangle(x, 0, 0, 1, 1)
-            gmsh.model.occ.synchronize()
-            gmsh.model.addPhysicalGroup(2, [body], name=name)
-            if name == "upper":
-                gmsh.model.mesh.setRecombine(2, body)
+        bodies = [gmsh.model.occ.addRectangle(x, 0, 0, 1, 1) for x in (0, 1, 5)]
+        gmsh.model.occ.synchronize()
+        gmsh.model.addPhysicalGroup(2, bodies[:2], name="upper")
+        gmsh.model.addPhysicalGroup(2, bodies[2:], name="lower")
+        gmsh.model.mesh.setRecombine(2, bodies[0])
         gmsh.model.mesh.generate(2)
         gmsh.write(str(tmp_path / "a.msh"))
     text = fault(tmp_path / "a.msh")
-    assert text.startswith("geometry.bodies: different cell types, triangles of 3 nodes")
+    assert text.startswith("geometry.bodies.upper: mixed cell types, triangles of 3 nodes")
 
 
 def test_three_dimensional_cells(tmp_path):

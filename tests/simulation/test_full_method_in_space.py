@@ -16,7 +16,9 @@ def test_uniform_pressure_is_exact(cells, order, degree, theta):
     contact |= {"theta": theta} if method == "nitsche" else {"penalty": "1e15 Pa/m"}
     tables = {
         "model": "3d",
-        "geometry": PatchInSpace(columns=(2, 3), order=order, tetrahedra=cells == "tetrahedra"),
+        "geometry": PatchInSpace(
+            columns=(2, 3), orders=(order, order), tetrahedra=(cells == "tetrahedra",) * 2
+        ),
         "mesh": {"degree": degree},
         "bodies": {
             name: {"young_modulus": E, "poisson_ratio": 0.0}

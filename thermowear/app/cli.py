@@ -132,6 +132,7 @@ def _validate(chosen) -> int:
 
 
 def _mesh(chosen) -> int:
+    from ..geometry.mesh.mixed import count_cells
     from ..geometry.reading.export import check_ending, write_mesh
 
     check_ending(chosen.output)
@@ -139,7 +140,7 @@ def _mesh(chosen) -> int:
     _check_absent(chosen.output, chosen.overwrite)
     mesh = case.tagged_mesh()
     write_mesh(mesh, chosen.output)
-    print(f"wrote {chosen.output}: {len(mesh.cells)} cells, {len(mesh.points)} points")
+    print(f"wrote {chosen.output}: {count_cells(mesh)} cells, {len(mesh.points)} points")
     return 0
 
 

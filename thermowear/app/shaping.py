@@ -14,6 +14,7 @@ from ..errors import CaseError
 from ..geometry.cad.design import CARRIERS, Design, add_table, write_table
 from ..geometry.cad.step import write_prism, write_section
 from ..geometry.cad.worn_body import only_body, write_design_mesh
+from ..geometry.mesh.mixed import block_of
 
 _FORMATS = (".csv", *CARRIERS)
 _IN_TIME = ("transient", "initial")
@@ -117,7 +118,8 @@ def write_shape(shaped: Shaped, path: Path) -> None:
         return
     geometry = case.geometry
     face = geometry.contact[design.body - 1]
-    mesh = only_body(case.tagged_mesh(), geometry.parts_of(shaped.body))
+    parts = geometry.parts_of(shaped.body)
+    mesh = only_body(block_of(case.tagged_mesh(), *parts), parts)
     if path.suffix != ".step":
         from ..bulk.mesh_motion import serial_extension
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, NamedTuple
 
 import basix
 import basix.ufl
@@ -50,7 +51,9 @@ class Bodies:
         found = [len(body.facets(surface)) > 0 for body in self.each]
         return int(np.argmax(np.any(self.comm.allgather(found), axis=0)))
 
-    def in_file_order(self, columns: Sequence[tuple[np.ndarray, ...]]) -> list[np.ndarray] | None:
+    def in_file_order(
+        self, columns: Sequence[tuple[np.ndarray, ...]]
+    ) -> list[list[np.ndarray]] | None:
         """Gather values by cell on rank 0, in the order of the tagged mesh. Every rank calls.
 
         Parameters
@@ -60,21 +63,27 @@ class Bodies:
 
         Returns
         -------
-        list of ndarray or None
-            One array for each column; None on other ranks than 0.
+        list of list of ndarray, or None
+            For each block of the tagged mesh (of one cell type and order) one array for each
+            column; None on other ranks than 0.
         """
-        parts = []
+        parts: dict[int, list] = {body.block: [] for body in self.each}
         for body, values in zip(self.each, columns, strict=True):
             created = body.mesh.topology.original_cell_index[: body.n_cells]
             gathered = self.comm.gather((created, *values), root=0)
             for original, *rest in gathered or ():
                 assert body.cell_numbers is not None
-                parts.append((body.cell_numbers[original], *rest))
-        if not parts:
+                parts[body.block].append((body.cell_numbers[original], *rest))
+        if self.comm.rank > 0:
             return None
-        numbers, *joined = (np.concatenate(column) for column in zip(*parts, strict=True))
-        order = np.argsort(numbers)
-        return [column[order] for column in joined]
+        return [_sorted(parts[block]) for block in sorted(parts)]
+
+
+def _sorted(parts: list[tuple[np.ndarray, ...]]) -> list[np.ndarray]:
+    """Columns of several tables joined, sorted by the first one, and without it."""
+    numbers, *joined = (np.concatenate(column) for column in zip(*parts, strict=True))
+    order = np.argsort(numbers)
+    return [column[order] for column in joined]
 
 
 def distribute(tagged, comm) -> Bodies:
@@ -82,24 +91,76 @@ def distribute(tagged, comm) -> Bodies:
 
     Parameters
     ----------
-    tagged : thermowear.geometry.TaggedMesh or None
-        Needed on rank 0, ignored elsewhere. Parts that share nodes or surfaces are one body.
+    tagged : thermowear.geometry.TaggedMesh, thermowear.geometry.MixedMesh or None
+        Needed on rank 0, ignored elsewhere. Parts that share nodes or surfaces are one body, unless
+        their cells differ in type or order.
     comm : mpi4py.MPI.Comm
         Every rank calls.
     """
-    head, groups = None, [np.empty(0, dtype=np.int64)]
+    sources = _bodies_of(tagged) if comm.rank == 0 else []
+    head = None
     if comm.rank == 0:
-        groups = _connected(tagged)
-        shape = tagged.cell_type, tagged.facet_type, tagged.order, tagged.points.shape[1]
-        head = shape, tagged.bodies, tagged.surfaces, tagged.checksum(), len(groups)
-    shape, names, surfaces, checksum, count = comm.bcast(head)
+        head = (
+            tagged.bodies,
+            tagged.surfaces,
+            tagged.checksum(),
+            [source.head for source in sources],
+        )
+    names, surfaces, checksum, heads = comm.bcast(head)
     return Bodies(
         tuple(
-            _body(tagged, comm, shape, names, surfaces, groups[k] if comm.rank == 0 else None)
-            for k in range(count)
+            _body(sources[k] if sources else None, comm, heads[k], names, surfaces)
+            for k in range(len(heads))
         ),
         checksum,
     )
+
+
+class _CellShape(NamedTuple):
+    """Cell type, facet type and order of the cells of a body, its dimension and its block."""
+
+    kind: str
+    facet_kind: str
+    order: int
+    gdim: int
+    block: int
+
+
+@dataclass(frozen=True)
+class _SourceBody:
+    """Body in a block of a tagged mesh.
+
+    Attributes
+    ----------
+    tagged : thermowear.geometry.TaggedMesh
+        Block of cells of one type and order.
+    tags : ndarray of int
+        Tags of the parts of the body.
+    block, first_cell, first_point : int
+        Number of the block, and numbers of its first cell and point in the whole mesh.
+    """
+
+    tagged: Any
+    tags: np.ndarray
+    block: int
+    first_cell: int
+    first_point: int
+
+    @property
+    def head(self) -> _CellShape:
+        """Shape of the cells, for ranks without the mesh."""
+        of = self.tagged
+        return _CellShape(of.cell_type, of.facet_type, of.order, of.points.shape[1], self.block)
+
+
+def _bodies_of(tagged) -> list[_SourceBody]:
+    """Bodies of a tagged mesh, block by block."""
+    sources, cell, point = [], 0, 0
+    for number, block in enumerate(tagged.blocks):
+        present = [np.intersect1d(tags, block.cell_tags) for tags in _connected(block)]
+        sources += [_SourceBody(block, tags, number, cell, point) for tags in present if len(tags)]
+        cell, point = cell + len(block.cells), point + len(block.points)
+    return sources
 
 
 def _connected(tagged) -> list[np.ndarray]:
@@ -119,10 +180,17 @@ def _connected(tagged) -> list[np.ndarray]:
     return [np.flatnonzero(body == body[k]) + 1 for k in np.sort(first)]
 
 
-def _body(tagged, comm, shape, names, surfaces, tags: np.ndarray | None) -> BodyMesh:
-    """Distributed mesh of the parts with some tags, given on rank 0."""
-    kind, facet_kind, order, gdim = shape
-    if tags is not None:
+def _body(
+    source: _SourceBody | None,
+    comm,
+    head: _CellShape,
+    names: tuple[str, ...],
+    surfaces: tuple[str, ...],
+) -> BodyMesh:
+    """Distributed mesh of a body, given on rank 0."""
+    kind, facet_kind, order, gdim, block = head
+    if source is not None:
+        tagged, tags = source.tagged, source.tags
         numbers = np.flatnonzero(np.isin(tagged.cell_tags, tags))
         used = np.zeros(len(tagged.points), dtype=bool)
         used[tagged.cells[numbers]] = True
@@ -132,8 +200,9 @@ def _body(tagged, comm, shape, names, surfaces, tags: np.ndarray | None) -> Body
         facets = in_dolfinx_order(tagged, facet_kind, own[tagged.facets[mine]])
         points = tagged.points[at]
         cell_tags, facet_tags = tagged.cell_tags[numbers], tagged.facet_tags[mine]
+        numbers, at = numbers + source.first_cell, at + source.first_point
     else:
-        numbers, at = None, None
+        tags, numbers, at = None, None, None
         cells = np.empty((0, equispaced(kind, order).dim), dtype=np.int64)
         facets = np.empty((0, equispaced(facet_kind, order).dim), dtype=np.int64)
         points = np.empty((0, gdim))
@@ -148,6 +217,7 @@ def _body(tagged, comm, shape, names, surfaces, tags: np.ndarray | None) -> Body
         names=names,
         surfaces=surfaces,
         parts=tuple(names[tag - 1] for tag in present),
+        block=block,
         cell_numbers=numbers,
         point_numbers=at,
     )

@@ -25,6 +25,8 @@ class BodyMesh:
         Names of the parts and surfaces of all bodies.
     parts : tuple of str
         Names of the parts of this body.
+    block : int
+        Block of the tagged mesh, of cells of one type and order.
     cell_numbers, point_numbers : ndarray of int or None
         Numbers of the cells and points in the tagged mesh, in the order of creation; None on other
         ranks than 0.
@@ -36,8 +38,14 @@ class BodyMesh:
     names: tuple[str, ...]
     surfaces: tuple[str, ...]
     parts: tuple[str, ...]
+    block: int
     cell_numbers: np.ndarray | None
     point_numbers: np.ndarray | None
+
+    @property
+    def cell_type(self) -> str:
+        """Type of the cells."""
+        return self.mesh.topology.cell_name()
 
     @property
     def n_cells(self) -> int:

@@ -54,10 +54,12 @@ def assembled(form: fem.Form) -> np.ndarray:
 
 def surface_area(bodies: Bodies, kinematics: Kinematics, surface: str) -> float:
     """Area of a surface of the solid according to its kinematic model [m²]. Every rank calls."""
-    body = bodies.each[bodies.index_of(surface)]
-    one = fem.Constant(body.mesh, default_scalar_type(1.0))
-    form = kinematics.integral(body.mesh, one, body.surface_measure(surface))
-    return bodies.comm.allreduce(fem.assemble_scalar(compiled(form)), op=MPI.SUM)
+    area = 0.0
+    for body in bodies.each:
+        one = fem.Constant(body.mesh, default_scalar_type(1.0))
+        form = kinematics.integral(body.mesh, one, body.surface_measure(surface))
+        area += fem.assemble_scalar(compiled(form))
+    return bodies.comm.allreduce(area, op=MPI.SUM)
 
 
 def nodal_loads(space: fem.FunctionSpace, work: Callable) -> np.ndarray:

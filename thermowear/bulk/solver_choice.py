@@ -113,7 +113,7 @@ def choose_solver(asked: str, bodies: Bodies, degree: int, single: bool) -> Solv
     sizes = [count_unknowns(body.mesh, degree) for body in bodies.each]
     factors, unknowns = [factor_memory(size) for size in sizes], sum(sizes)
     memory = sum(factors)
-    kind = bodies.each[int(np.argmax(sizes))].mesh.topology.cell_name()
+    kind = bodies.each[int(np.argmax(sizes))].cell_type
     available = bodies.comm.bcast(available_memory(), root=0)
     name, reason = asked, "as given"
     if asked == "auto":

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Literal, Protocol
 
 from ..errors import CaseError
-from ..geometry.mesh.tagged import TaggedMesh
+from ..geometry.mesh.mixed import AnyMesh
 from ..laws.time_course import LoadHistory, TimeFunction
 from .body import Body, Material
 from .conditions import Heat, Holder, Motion
@@ -32,7 +32,7 @@ class MeshSource(Protocol):
     @property
     def path(self) -> str | None: ...
 
-    def mesh(self, zone: Zone | None) -> TaggedMesh:
+    def mesh(self, zone: Zone | None) -> AnyMesh:
         """Mesh for a contact zone, by default the expected one; called on rank 0.
 
         Raises

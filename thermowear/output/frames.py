@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from xml.etree import ElementTree as ET
@@ -60,7 +61,7 @@ def write_frame(place: Path, frame) -> None:
     write_points(new.file("interface"), frame.interface)
     if frame.track is not None:
         write_points(new.file("track"), frame.track)
-    write_fields(new.file("fields"), _single(frame.fields))
+    _write_blocks(new.file("fields"), [_single(block) for block in frame.fields.blocks])
     earlier = [old for old in frame_files(place) if old.number != new.number]
     kept = [o for o in earlier if o.number < new.number and o.number % frame.every == 0]
     _write_index(place, [*kept, new])
@@ -124,7 +125,7 @@ def _write_index(place: Path, frames: list[FrameFiles]) -> None:
 
 
 def _single(fields):
-    """Convert fields to single precision."""
+    """Convert fields of one cell type to single precision."""
     names = ("points", "displacement", "von_mises", "temperature")
     values = {name: getattr(fields, name) for name in names}
     short = {name: v.astype(np.float32) for name, v in values.items() if v is not None}
@@ -137,26 +138,33 @@ def write_fields(path: Path, fields) -> None:
     Parameters
     ----------
     path : Path
-    fields : thermowear.results.BodyFields
+    fields : thermowear.results.BodyFields or thermowear.results.MixedFields
     """
+    _write_blocks(path, fields.blocks)
+
+
+def _write_blocks(path: Path, blocks: Sequence) -> None:
+    """Write `thermowear.results.BodyFields`, one for each type of cells."""
     import meshio
 
-    n_cells, n_points, gdim = fields.points.shape
-    first = np.arange(n_cells)[:, None, None] * n_points
-    corners = fields.pieces.shape[1]
-    pieces = (first + fields.pieces).reshape(-1, corners)
-    values = {"displacement": _three(fields.displacement.reshape(-1, gdim))}
-    values["von_mises"] = fields.von_mises.ravel()
-    if fields.temperature is not None:
-        values["temperature"] = fields.temperature.ravel()
-    data = {FIELDS[name].header: value for name, value in values.items()}
-    body = np.repeat(fields.body, len(fields.pieces))
-    mesh = meshio.Mesh(
-        _three(fields.points.reshape(-1, gdim)),
-        [(_CELLS[gdim, corners], pieces)],
-        data,
-        {"body": [body]},
-    )
+    points, cells, body, start = [], [], [], 0
+    data: dict[str, list[np.ndarray]] = {}
+    for fields in blocks:
+        n_cells, n_points, gdim = fields.points.shape
+        first = start + np.arange(n_cells)[:, None, None] * n_points
+        corners = fields.pieces.shape[1]
+        cells.append((_CELLS[gdim, corners], (first + fields.pieces).reshape(-1, corners)))
+        points.append(_three(fields.points.reshape(-1, gdim)))
+        body.append(np.repeat(fields.body, len(fields.pieces)))
+        values = {"displacement": _three(fields.displacement.reshape(-1, gdim))}
+        values["von_mises"] = fields.von_mises.ravel()
+        if fields.temperature is not None:
+            values["temperature"] = fields.temperature.ravel()
+        for name, value in values.items():
+            data.setdefault(FIELDS[name].header, []).append(value)
+        start += n_cells * n_points
+    joined = {name: np.concatenate(values) for name, values in data.items()}
+    mesh = meshio.Mesh(np.concatenate(points), cells, joined, {"body": body})
     with atomic_write(path) as draft:
         mesh.write(draft, file_format="vtu")
 

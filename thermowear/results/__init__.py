@@ -2,5 +2,14 @@
 
 from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack
 from .quantity import TABLES
-from .result import FIELDS, BodyFields, Frame, FrictionHistory, Result, TrackHistory
+from .result import (
+    FIELDS,
+    AnyFields,
+    BodyFields,
+    Frame,
+    FrictionHistory,
+    MixedFields,
+    Result,
+    TrackHistory,
+)
 from .rows import CycleRow, HeatRow, HistoryRow, LoadRow

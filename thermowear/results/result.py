@@ -73,6 +73,27 @@ class BodyFields:
     temperature: np.ndarray | None
     von_mises: np.ndarray
 
+    @property
+    def blocks(self) -> tuple[BodyFields, ...]:
+        """Only these fields, as all cells are of one type; see `MixedFields`."""
+        return (self,)
+
+
+@dataclass(frozen=True)
+class MixedFields:
+    """Fields of bodies whose cells differ in type or order, on rank 0.
+
+    Attributes
+    ----------
+    blocks : tuple of BodyFields
+        Fields in the cells of each type and order, in the order of the bodies.
+    """
+
+    blocks: tuple[BodyFields, ...]
+
+
+AnyFields = BodyFields | MixedFields
+"""Fields of the bodies; `blocks` lists those in cells of one type and order."""
 
 FIELDS = {
     "displacement": from_key("displacement_m"),
@@ -95,7 +116,7 @@ class Frame:
     time : float
         [s]
     interface : InterfaceFields
-    fields : BodyFields or None
+    fields : BodyFields, MixedFields or None
         Fields of the bodies, on rank 0 only.
     track : WornTrack or None
         Worn track of a reciprocating analysis.
@@ -105,7 +126,7 @@ class Frame:
     every: int
     time: float
     interface: InterfaceFields
-    fields: BodyFields | None
+    fields: AnyFields | None
     track: WornTrack | None = None
 
 
@@ -134,7 +155,7 @@ class Result:
         Results of a stability analysis.
     stopped : BaseException or None
         Exception that stopped the run early.
-    fields : BodyFields or None
+    fields : BodyFields, MixedFields or None
         Fields of the bodies, on rank 0 only.
     """
 
@@ -148,7 +169,7 @@ class Result:
     heat: list[HeatRow] = field(default_factory=list)
     modes: Modes | None = None
     stopped: BaseException | None = None
-    fields: BodyFields | None = None
+    fields: AnyFields | None = None
 
     def tables(self) -> dict[str, Any]:
         """Tables by the names of their files without ``.csv``: points at the end, or rows."""

@@ -11,6 +11,7 @@ from ..bulk.field import basis_element, lagrange_space
 from ..bulk.spaces import Spaces
 from ..compat import coordinate_element, geometry_dofmap
 from ..errors import CaseError
+from ..geometry.mesh.mixed import AnyMesh, joined
 from ..geometry.mesh.nodes import CORNERS, FACETS, boundary, reference_nodes
 from ..geometry.mesh.tagged import TaggedMesh, compact
 from ..geometry.reading.mesh_checks import oriented
@@ -30,7 +31,7 @@ class UserMeshes:
     Attributes
     ----------
     checksum : str
-    tagged : TaggedMesh
+    tagged : TaggedMesh or MixedMesh
     bodies : tuple of MeshBody
         The held body first.
     reversed_cells : tuple of (ndarray of bool)
@@ -38,12 +39,12 @@ class UserMeshes:
     """
 
     checksum: str
-    tagged: TaggedMesh = field(compare=False, repr=False)
+    tagged: AnyMesh = field(compare=False, repr=False)
     bodies: tuple[MeshBody, ...] = field(compare=False, repr=False)
     reversed_cells: tuple[np.ndarray, ...] = field(compare=False, repr=False)
     path: None = None
 
-    def mesh(self, zone) -> TaggedMesh:
+    def mesh(self, zone) -> AnyMesh:
         return self.tagged
 
     def expected_zone(self, force, approach, modulus) -> None:
@@ -89,11 +90,33 @@ class UserMeshes:
         index = self.index(body)
         if system.worn is not None and system.worn.meshed_anew:
             raise CaseError(f"{name}: {body.name!r} has been remeshed; its field has no user mesh")
-        first, turned = sum(map(len, self.reversed_cells[:index])), self.reversed_cells[index]
-        by_cell = _by_cell(system, spaces, values)[first : first + len(turned)]
-        nodes = basis_element(spaces.each[0]).points
+        turned = self.reversed_cells[index]
+        by_cell, space = self._by_cell(index, system, spaces, values)
+        nodes = basis_element(space).points
         by_cell[turned] = by_cell[turned][:, matching(nodes[:, ::-1], nodes)]
         return _placed(body, by_cell, spaces.degree, name)
+
+    def _by_cell(
+        self, index: int, system: System, spaces: Spaces, values: np.ndarray
+    ) -> tuple[np.ndarray, fem.FunctionSpace]:
+        """Nodal values of the cells of a body on all ranks, in the order of the tagged mesh.
+
+        Shape (n_cells, nodes_per_cell, components); also a space on cells like these.
+        """
+        columns = []
+        functions = spaces.functions(values, "values")
+        for body, function in zip(system.bodies.each, functions, strict=True):
+            nodal = function.x.array.reshape(-1, spaces.components)
+            columns.append((nodal[function.function_space.dofmap.list[: body.n_cells]],))
+        blocks = [block for (block,) in system.comm.bcast(system.bodies.in_file_order(columns))]
+        mixed = len(blocks) > 1  # one block for each body
+        chosen, before = (index, 0) if mixed else (0, sum(map(len, self.reversed_cells[:index])))
+        space = next(
+            space
+            for body, space in zip(system.bodies.each, spaces.each, strict=True)
+            if body.block == chosen
+        )
+        return blocks[chosen][before : before + len(self.reversed_cells[index])], space
 
 
 @dataclass(frozen=True)
@@ -120,12 +143,13 @@ def user_meshes(bodies: tuple[MeshBody, ...]) -> UserMeshes:
     """
     pieces = [_gathered(body) for body in bodies]
 
-    def joined() -> tuple[str, TaggedMesh, tuple[np.ndarray, ...]]:
+    def gathered() -> tuple[str, AnyMesh, tuple[np.ndarray, ...]]:
         checked = [_oriented(_in_model(piece)) for piece in pieces if piece is not None]
-        tagged = _joined([piece for piece, _ in checked], bodies)
+        pairs = zip(checked, bodies, strict=True)
+        tagged = joined([_tagged(piece, body) for (piece, _), body in pairs])
         return tagged.checksum(), tagged, tuple(turned for _, turned in checked)
 
-    checksum, tagged, reversed_cells = on_root(bodies[0].mesh.comm, joined)
+    checksum, tagged, reversed_cells = on_root(bodies[0].mesh.comm, gathered)
     return UserMeshes(checksum, tagged, bodies, reversed_cells)
 
 
@@ -135,8 +159,7 @@ def _gathered(body: MeshBody) -> _Piece | None:
     kind, order = mesh.topology.cell_name(), coordinate_element(mesh).degree
     if kind not in FACETS:
         raise CaseError(
-            f"Body {body.name!r}: has cells of type {kind}; supported are {', '.join(FACETS)} (a "
-            "mesh of a section, or of hexahedra)"
+            f"Body {body.name!r}: has cells of type {kind}; supported are {', '.join(FACETS)}"
         )
     parts = body.part_of_cells()
     own = np.flatnonzero(parts >= 0)
@@ -190,42 +213,27 @@ def _oriented(piece: _Piece) -> tuple[_Piece, np.ndarray]:
     return replace(piece, cells=cells), np.any(cells != piece.cells, axis=1)
 
 
-def _joined(pieces: list[_Piece], bodies: tuple[MeshBody, ...]) -> TaggedMesh:
-    """Mesh of all bodies; nodes that they share are duplicated."""
-    if len({(piece.kind, piece.order) for piece in pieces}) > 1:
-        kinds = ", ".join(f"{piece.name}: {piece.kind} of order {piece.order}" for piece in pieces)
-        raise CaseError(f"Model: all bodies need cells of one type and order; found {kinds}")
-    kind, order = pieces[0].kind, pieces[0].order
-    extra = [part for body in bodies for part in list(body.parts)[1:]]
-    names = [body.name for body in bodies] + extra
-    starts = np.cumsum([0] + [len(piece.points) for piece in pieces])
-    tags = [
-        np.array([names.index(part) + 1 for part in body.parts])[piece.parts]
-        for piece, body in zip(pieces, bodies, strict=True)
-    ]
-    found = [_surfaces(piece, kind, order) for piece in pieces]
-    surfaces = [name for _, of_facet in found for name in dict.fromkeys(of_facet)]
-    facets = [nodes + start for (nodes, _), start in zip(found, starts, strict=False)]
+def _tagged(piece: _Piece, body: MeshBody) -> TaggedMesh:
+    """Tagged mesh of one body."""
+    facets, of_facet = _surfaces(piece)
+    surfaces = tuple(dict.fromkeys(of_facet))
     return compact(
         TaggedMesh(
-            points=np.concatenate([piece.points for piece in pieces]),
-            cell_type=kind,
-            cells=np.concatenate([p.cells + at for p, at in zip(pieces, starts, strict=False)]),
-            cell_tags=np.concatenate(tags).astype(np.int32),
-            facets=np.concatenate(facets),
-            facet_tags=np.array(
-                [surfaces.index(name) + 1 for _, of_facet in found for name in of_facet],
-                dtype=np.int32,
-            ),
-            bodies=tuple(names),
-            surfaces=tuple(surfaces),
+            points=piece.points,
+            cell_type=piece.kind,
+            cells=piece.cells,
+            cell_tags=(piece.parts + 1).astype(np.int32),
+            facets=facets,
+            facet_tags=np.array([surfaces.index(name) + 1 for name in of_facet], dtype=np.int32),
+            bodies=tuple(body.parts),
+            surfaces=surfaces,
         )
     )
 
 
-def _surfaces(piece: _Piece, kind: str, order: int) -> tuple[np.ndarray, list[str]]:
+def _surfaces(piece: _Piece) -> tuple[np.ndarray, list[str]]:
     """Nodes of the tagged facets on the boundary of a body, and the name of each."""
-    facets = boundary(kind, order, piece.cells.astype(np.int64))
+    facets = boundary(piece.kind, piece.order, piece.cells.astype(np.int64))
     own = np.sort(facets[:, : piece.corners.shape[1]], axis=1)
     every = np.concatenate([own, np.sort(piece.corners, axis=1)])
     _, label = np.unique(every, axis=0, return_inverse=True)
@@ -236,19 +244,6 @@ def _surfaces(piece: _Piece, kind: str, order: int) -> tuple[np.ndarray, list[st
     tagged = np.flatnonzero(named >= 0)
     tagged = tagged[np.argsort(piece.tags[named[tagged]], kind="stable")]
     return facets[tagged], [f"{piece.name}:{tag}" for tag in piece.tags[named[tagged]]]
-
-
-def _by_cell(system: System, spaces: Spaces, values: np.ndarray) -> np.ndarray:
-    """Nodal values of all cells on all ranks, in the order of the tagged mesh.
-
-    Shape (n_cells, nodes_per_cell, components).
-    """
-    columns = []
-    functions = spaces.functions(values, "values")
-    for body, function in zip(system.bodies.each, functions, strict=True):
-        nodal = function.x.array.reshape(-1, spaces.components)
-        columns.append((nodal[function.function_space.dofmap.list[: body.n_cells]],))
-    return system.comm.bcast(system.bodies.in_file_order(columns))[0]
 
 
 def _placed(body: MeshBody, by_cell: np.ndarray, degree: int, name: str) -> fem.Function:

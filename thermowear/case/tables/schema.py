@@ -222,11 +222,16 @@ class Case(Section):
         if zone is None:
             zone = self.geometry.expected_zone(self.pressing())
         mesh = self.geometry.build(self.mesh, zone)
-        nodes = len(mesh.cells) * self.mesh.degree ** mesh.points.shape[1]
-        nodes /= 5 if mesh.cell_type == "tetrahedron" else 1  # five or six fill a hexahedron
+        cells = sum(len(block.cells) for block in mesh.blocks)
+        nodes = sum(
+            # five or six tetrahedra fill a hexahedron
+            len(block.cells) / (5 if block.cell_type == "tetrahedron" else 1)
+            for block in mesh.blocks
+        )
+        nodes *= self.mesh.degree ** mesh.points.shape[1]
         if nodes > _MOST_NODES:
             raise CaseError(
-                f"mesh: {len(mesh.cells)} cells of degree {self.mesh.degree} have about "
+                f"mesh: {cells} cells of degree {self.mesh.degree} have about "
                 f"{nodes / 1e6:.2g} million nodes; at most {_MOST_NODES / 1e6:g} million can be "
                 "computed; check the units of the geometry, or lower mesh.elements or "
                 "mesh.degree"

@@ -54,6 +54,11 @@ class TaggedMesh:
     surfaces: tuple[str, ...]
 
     @property
+    def blocks(self) -> tuple[TaggedMesh, ...]:
+        """Only this mesh, as its cells are of one type and order; see `mixed.MixedMesh`."""
+        return (self,)
+
+    @property
     def facet_type(self) -> str:
         """``"interval"``, in space ``"quadrilateral"`` or ``"triangle"``."""
         return FACETS[self.cell_type]

@@ -5,11 +5,10 @@ Bodies consist of one or several cell sets of the file, and may have parts by ce
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from ...errors import CaseError
+from ..mesh.mixed import AnyMesh, of_blocks, retagged
 from ..mesh.nodes import boundary, facet_nodes, numbered
 from ..mesh.tagged import TaggedMesh, compact
 from .contents import CellBlock, MeshContents
@@ -29,8 +28,10 @@ _FARTHEST, _SMALLEST = 1e6, 1e-8
 """Largest distance of nodes from the origin, and least size of both bodies [m]."""
 
 
-def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named]) -> TaggedMesh:
+def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named]) -> AnyMesh:
     """Select the cells of the bodies and the edges or facets of the surfaces.
+
+    The mesh has one block, or one for each body where their types or orders differ.
 
     Raises
     ------
@@ -42,37 +43,73 @@ def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named])
     for block in found:
         used[block.nodes] = True
     points = _placed(contents, used)
-    shapes = {(block.corners, block.nodes.shape[1]) for block in found}
-    _check_one_type("geometry.bodies: different", shapes, contents.dim)
     _check_disjoint(found, bodies)
-    ((corners, nodes_per_cell),) = shapes
-    kind = TYPES[contents.dim][corners]
-    order = _ORDERS[kind][nodes_per_cell]
-    points, cells = with_inner_nodes(points, [block.nodes for block in found], kind)
+    kinds = [TYPES[contents.dim][block.corners] for block in found]
+    shapes = [
+        (kind, _ORDERS[kind][block.nodes.shape[1]])
+        for kind, block in zip(kinds, found, strict=True)
+    ]
+    cells = []
+    for kind, block in zip(kinds, found, strict=True):
+        points, nodes = with_inner_nodes(points, block.nodes, kind)
+        cells.append(nodes)
     # nodes shared by both bodies are duplicated, otherwise the bodies would be tied
-    cells = [nodes + i * len(points) for i, nodes in enumerate(cells)]
+    original = len(points)
+    cells = [nodes + i * original for i, nodes in enumerate(cells)]
     points = np.concatenate([points] * len(cells))
-    cells, facets = zip(
-        *(
-            _oriented(points, nodes, kind, order, body.name)
-            for nodes, body in zip(cells, bodies, strict=True)
-        ),
-        strict=True,
-    )
-    original = len(points) // len(cells)
+    checked = [
+        _oriented(points, nodes, *shape, body.name)
+        for nodes, shape, body in zip(cells, shapes, bodies, strict=True)
+    ]
+    facets = [boundary_ for _, boundary_ in checked]
     picked = [facets_of(contents, surface, facets, bodies, original) for surface in surfaces]
-    counts = [len(nodes) for nodes in cells], [len(nodes) for nodes in picked]
-    tags = [np.repeat(np.arange(len(n), dtype=np.int32) + 1, n) for n in counts]
+    names = tuple(body.name for body in bodies), tuple(surface.name for surface in surfaces)
+    every = list(range(len(bodies)))
+    blocks = [every] if len(set(shapes)) == 1 else [[i] for i in every]
+    return of_blocks(
+        [
+            _block(points, shapes[of[0]][0], {i: checked[i][0] for i in of}, picked, *names)
+            for of in blocks
+        ]
+    )
+
+
+def _block(
+    points: np.ndarray,
+    kind: str,
+    cells: dict[int, np.ndarray],
+    picked: list[list[np.ndarray]],
+    bodies: tuple[str, ...],
+    surfaces: tuple[str, ...],
+) -> TaggedMesh:
+    """Mesh of the bodies with cells of one type and order.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, gdim) [m]
+    kind : str
+    cells : dict of int to ndarray
+        Cells by index of the body.
+    picked : list of list of ndarray
+        Facets of each surface that belong to each body.
+    bodies, surfaces : tuple of str
+        All names.
+    """
+    facets = [np.concatenate([of_surface[i] for i in cells]) for of_surface in picked]
+    tags = [
+        np.repeat(np.array(numbers, dtype=np.int32) + 1, [len(nodes) for nodes in groups])
+        for numbers, groups in ((list(cells), cells.values()), (range(len(facets)), facets))
+    ]
     return compact(
         TaggedMesh(
             points=points,
             cell_type=kind,
-            cells=np.concatenate(cells),
+            cells=np.concatenate(list(cells.values())),
             cell_tags=tags[0],
-            facets=np.concatenate(picked),
+            facets=np.concatenate(facets),
             facet_tags=tags[1],
-            bodies=tuple(body.name for body in bodies),
-            surfaces=tuple(surface.name for surface in surfaces),
+            bodies=bodies,
+            surfaces=surfaces,
         )
     )
 
@@ -134,8 +171,11 @@ def _check_one_type(found: str, shapes: set[tuple[int, int]], dim: int) -> None:
 
 def _check_disjoint(found: list[CellBlock], bodies: list[Named]) -> None:
     """Reject cells that belong to both bodies or occur twice."""
-    _, count = numbered(np.concatenate([b.nodes[:, : b.corners] for b in found]))
-    double = int((count - 1).sum())
+    double = 0
+    for corners in {block.corners for block in found}:
+        alike = [b.nodes[:, :corners] for b in found if b.corners == corners]
+        _, count = numbered(np.concatenate(alike))
+        double += int((count - 1).sum())
     if double:
         raise CaseError(
             f"geometry.bodies: {double} cells are in both {bodies[0].in_file!r} and "
@@ -144,32 +184,28 @@ def _check_disjoint(found: list[CellBlock], bodies: list[Named]) -> None:
 
 
 def with_inner_nodes(
-    points: np.ndarray, cells: list[np.ndarray], kind: str
-) -> tuple[np.ndarray, list[np.ndarray]]:
+    points: np.ndarray, nodes: np.ndarray, kind: str
+) -> tuple[np.ndarray, np.ndarray]:
     """Add the nodes inside faces and cells that serendipity elements lack.
 
     They lie where the shape functions of quadrilaterals of 8 nodes, and of hexahedra of 20, imply:
     in a face at half the sum of its nodes in edges less a quarter of that of its corners, in a
     hexahedron at a quarter of the sum of its nodes in edges less a quarter of that of its corners.
     """
-    if (kind, cells[0].shape[1]) not in (("quadrilateral", 8), ("hexahedron", 20)):
-        return points, cells
-    result = []
-    for nodes in cells:
-        if kind == "hexahedron":
-            on_face = facet_nodes(kind, 2)[:, :8]
-            faces = nodes[:, on_face].reshape(-1, 8)
-            number, _ = numbered(faces[:, :4])
-            _, first = np.unique(number, return_index=True)
-            nodes = np.column_stack([nodes, (len(points) + number).reshape(-1, 6)])
-            points = np.concatenate([points, _centre(points[faces[first]], 4, 2)])
-            cells_of, corners, share = nodes[:, :20], 8, 4
-        else:
-            cells_of, corners, share = nodes, 4, 2
-        centres = _centre(points[cells_of], corners, share)
-        result.append(np.column_stack([nodes, len(points) + np.arange(len(nodes))]))
-        points = np.concatenate([points, centres])
-    return points, result
+    if (kind, nodes.shape[1]) not in (("quadrilateral", 8), ("hexahedron", 20)):
+        return points, nodes
+    cells_of, corners, share = nodes, 4, 2
+    if kind == "hexahedron":
+        on_face = facet_nodes(kind, 2)[:, :8]
+        faces = nodes[:, on_face].reshape(-1, 8)
+        number, _ = numbered(faces[:, :4])
+        _, first = np.unique(number, return_index=True)
+        nodes = np.column_stack([nodes, (len(points) + number).reshape(-1, 6)])
+        points = np.concatenate([points, _centre(points[faces[first]], 4, 2)])
+        cells_of, corners, share = nodes[:, :20], 8, 4
+    centres = _centre(points[cells_of], corners, share)
+    nodes = np.column_stack([nodes, len(points) + np.arange(len(nodes))])
+    return np.concatenate([points, centres]), nodes
 
 
 def _centre(x: np.ndarray, corners: int, share: int) -> np.ndarray:
@@ -177,13 +213,13 @@ def _centre(x: np.ndarray, corners: int, share: int) -> np.ndarray:
 
 
 def divided(
-    mesh: TaggedMesh, contents: MeshContents, bodies: list[Named], sets: list[Named]
-) -> TaggedMesh:
+    mesh: AnyMesh, contents: MeshContents, bodies: list[Named], sets: list[Named]
+) -> AnyMesh:
     """Mesh with cell sets of its bodies as separate parts, listed after the bodies.
 
     Parameters
     ----------
-    mesh : TaggedMesh
+    mesh : TaggedMesh or MixedMesh
         Mesh of the bodies.
     contents : MeshContents
         Contents of its file.
@@ -218,4 +254,4 @@ def divided(
         taken[cells] = number
         tags[cells] = len(mesh.bodies) + number
     names = (*mesh.bodies, *(part.name for part in sets))
-    return replace(mesh, cell_tags=tags, bodies=names)
+    return retagged(mesh, tags, names)

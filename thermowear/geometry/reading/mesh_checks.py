@@ -6,13 +6,12 @@ it, and the map from the unit cell to each cell preserves orientation everywhere
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import scipy
 
 from ...case.tables.geometry import Geometry
 from ...errors import CaseError, note
+from ..mesh.mixed import AnyMesh, block_of, block_with, retagged
 from ..mesh.nodes import CORNERS, boundary, components, meeting, numbered, turned
 from ..mesh.tagged import TaggedMesh, jacobians
 
@@ -124,7 +123,7 @@ def _position_text(nodes: np.ndarray) -> str:
     return f"at x = {x:.6g} m, y = {y:.6g} m"
 
 
-def check_mesh(mesh: TaggedMesh, geometry: Geometry, model: str) -> None:
+def check_mesh(mesh: AnyMesh, geometry: Geometry, model: str) -> None:
     """Check the named bodies and surfaces of a mesh.
 
     Raises
@@ -134,32 +133,40 @@ def check_mesh(mesh: TaggedMesh, geometry: Geometry, model: str) -> None:
         a surface of symmetry does not lie in a plane x = const.
     """
     mesh = whole_bodies(mesh, geometry)
-    _check_shared_edges(mesh)
+    for block in mesh.blocks:
+        _check_shared_edges(block)
     for surface in geometry.contact:
-        _check_one_curve(_ends(mesh, surface), surface)
+        _check_one_curve(_ends(block_with(mesh, surface), surface), surface)
     for body, surface in zip(geometry.bodies, (geometry.held, geometry.fixed), strict=True):
-        _check_pieces_held(mesh, body, surface)
+        _check_pieces_held(block_of(mesh, body), body, surface)
     if geometry.symmetry:
         if model == "axisymmetric":
             raise CaseError("geometry.half: an axisymmetric model has no plane of symmetry")
         _symmetry(mesh, geometry)
 
 
-def whole_bodies(mesh: TaggedMesh, geometry: Geometry) -> TaggedMesh:
+def whole_bodies(mesh: AnyMesh, geometry: Geometry) -> AnyMesh:
     """Mesh with the cells of each body under one tag, those of its cell sets included."""
-    tags = np.zeros_like(mesh.cell_tags)
+    given = mesh.cell_tags
+    tags = np.zeros_like(given)
     for number, body in enumerate(geometry.bodies, start=1):
-        tags[np.isin(mesh.cell_tags, mesh.tags_of(geometry.parts_of(body)))] = number
-    return replace(mesh, cell_tags=tags, bodies=geometry.bodies)
+        parts = [mesh.bodies.index(part) + 1 for part in geometry.parts_of(body)]
+        tags[np.isin(given, parts)] = number
+    return retagged(mesh, tags, geometry.bodies)
 
 
-def described(mesh: TaggedMesh) -> list[str]:
+def points_of(mesh: AnyMesh, body: str) -> np.ndarray:
+    """Nodes of a body, shape (n, gdim) [m]."""
+    block = block_of(mesh, body)
+    return block.points[np.unique(block.cells[block.cell_tags == mesh.bodies.index(body) + 1])]
+
+
+def described(mesh: AnyMesh) -> list[str]:
     """Size and number of cells of each body, as short text."""
-    lines = []
+    lines, tags = [], mesh.cell_tags
     for tag, body in enumerate(mesh.bodies, start=1):
-        cells = mesh.cells[mesh.cell_tags == tag]
-        size = " by ".join(length(x) for x in np.ptp(mesh.points[np.unique(cells)], axis=0))
-        lines.append(f"{body} {size} with {len(cells)} cells")
+        size = " by ".join(length(x) for x in np.ptp(points_of(mesh, body), axis=0))
+        lines.append(f"{body} {size} with {np.count_nonzero(tags == tag)} cells")
     return lines
 
 
@@ -217,10 +224,25 @@ def _check_pieces_held(mesh: TaggedMesh, body: str, surface: str) -> None:
         note(f"geometry.path: {body!r} has {len(pieces)} pieces, all held by {surface!r}")
 
 
-def _symmetry(mesh: TaggedMesh, geometry: Geometry) -> None:
+def on_surface(mesh: AnyMesh, surface: str) -> np.ndarray:
+    """Corners of the facets of a surface, shape (n, gdim) [m]."""
+    corners = [b.facets_of(surface)[:, : CORNERS.get(b.facet_type, 2)] for b in mesh.blocks]
+    pairs = zip(mesh.blocks, corners, strict=True)
+    return np.concatenate([block.points[np.unique(nodes)] for block, nodes in pairs])
+
+
+def has_any(mesh: AnyMesh, body: str, surfaces: tuple[str, ...]) -> bool:
+    """True if a body has nodes on any of some surfaces."""
+    block = block_of(mesh, body)
+    nodes = np.concatenate([block.facets_of(surface).ravel() for surface in surfaces])
+    return bool(np.isin(block.cells[block.cell_tags == mesh.bodies.index(body) + 1], nodes).any())
+
+
+def _symmetry(mesh: AnyMesh, geometry: Geometry) -> None:
     """Check that surfaces of symmetry lie in one plane x = const, with the bodies on one side."""
-    size = np.ptp(mesh.points, axis=0).max()
-    planes = {name: mesh.points[np.unique(_ends(mesh, name)), 0] for name in geometry.symmetry}
+    points = mesh.points
+    size = np.ptp(points, axis=0).max()
+    planes = {name: on_surface(mesh, name)[:, 0] for name in geometry.symmetry}
     for name, x in planes.items():
         if np.ptp(x) > LEVEL * size:
             raise CaseError(
@@ -233,15 +255,14 @@ def _symmetry(mesh: TaggedMesh, geometry: Geometry) -> None:
             f"geometry.symmetry: the surfaces lie in different planes, x = {every.min():.6g} and "
             f"{every.max():.6g} m"
         )
-    beyond = mesh.points[:, 0] - every.mean()
+    beyond = points[:, 0] - every.mean()
     if min(beyond.max(), -beyond.min()) > LEVEL * size:
         raise CaseError(
             f"geometry.half: the bodies lie on both sides of the plane of symmetry "
             f"x = {every.mean():.6g} m; a half model lies on one side"
         )
-    on_plane = np.unique(np.concatenate([_ends(mesh, name).ravel() for name in geometry.symmetry]))
-    for tag, body in enumerate(mesh.bodies, start=1):
-        if not np.isin(mesh.cells[mesh.cell_tags == tag], on_plane).any():
+    for body in mesh.bodies:
+        if not has_any(mesh, body, geometry.symmetry):
             raise CaseError(
                 f"geometry.symmetry: no surface of {body!r} is listed; each body needs one"
             )

@@ -14,6 +14,8 @@ from .solid_checks import at
 
 TYPES = {2: {3: "triangle", 4: "quadrilateral"}, 3: {4: "tetrahedron", 8: "hexahedron"}}
 """Cell types by dimension and number of corners."""
+_FACET_TYPES = {3: "triangle", 4: "quadrilateral"}
+"""Types of facets in space by number of corners."""
 _TRIANGULAR = (3, 6, 10)
 """Numbers of nodes of triangles."""
 
@@ -69,16 +71,19 @@ def facets_of(
     facets: Sequence[np.ndarray],
     bodies: list[Named],
     copies: int,
-) -> np.ndarray:
-    """Boundary edges or facets of a surface; nodes of body i are those of the file plus i * copies.
+) -> list[np.ndarray]:
+    """Boundary edges or facets of a surface that belong to each body.
 
-    Of a joint of bodies that share its nodes, they belong to both.
+    The nodes of body i are those of the file plus i * copies. Of a joint of bodies that share its
+    nodes, they belong to both.
     """
     original = [of_body - i * copies for i, of_body in enumerate(facets)]
     masks = _members(contents, surface, original, bodies)
-    allowed = range(len(facets)) if surface.body is None else [surface.body]
-    result = np.concatenate([facets[i][masks[i]] for i in allowed])
-    if not len(result):
+    if surface.body is not None:
+        for i in set(range(len(masks))) - {surface.body}:
+            masks[i][:] = False
+    result = [of_body[mask] for of_body, mask in zip(facets, masks, strict=True)]
+    if not any(map(len, result)):
         whose = "a body" if surface.body is None else f"body {bodies[surface.body].name!r}"
         raise CaseError(f"{surface.key}: {surface.in_file!r} is not on the boundary of {whose}")
     return result
@@ -114,39 +119,54 @@ def _on_facets(
     bodies: list[Named],
 ) -> list[np.ndarray]:
     """Masks of the boundary facets of each body among triangles or quadrilaterals in space."""
-    corners = 3 if facets[0].shape[1] in _TRIANGULAR else 4
-    own = [of_body[:, :corners] for of_body in facets]
-    fitting = [nodes for nodes in wanted if nodes.shape[1] == corners]
-    number, _ = numbered(np.concatenate([*own, *fitting]))
-    starts = np.cumsum([len(of_body) for of_body in own])
-    *of_bodies, of_surface = np.split(number, starts)
-    lost = ~np.isin(of_surface, number[: starts[-1]])
-    off = sum(len(nodes) for nodes in wanted) - len(of_surface)
-    if lost.any() or off:
-        _check_lost(contents, surface, np.concatenate([*fitting, own[0][:0]])[lost], off, bodies)
-    return [np.isin(of_body, of_surface) for of_body in of_bodies]
+    masks: list[np.ndarray] = [np.zeros(len(of_body), dtype=bool) for of_body in facets]
+    counts = [3 if of_body.shape[1] in _TRIANGULAR else 4 for of_body in facets]
+    off, lost = sum(len(n) for n in wanted if n.shape[1] not in counts), []
+    for corners in sorted(set(counts)):
+        chosen = [i for i, count in enumerate(counts) if count == corners]
+        own = [facets[i][:, :corners] for i in chosen]
+        fitting = [nodes for nodes in wanted if nodes.shape[1] == corners]
+        number, _ = numbered(np.concatenate([*own, *fitting]))
+        starts = np.cumsum([len(of_body) for of_body in own])
+        *of_bodies, of_surface = np.split(number, starts)
+        for i, of_body in zip(chosen, of_bodies, strict=True):
+            masks[i] = np.isin(of_body, of_surface)
+        astray = ~np.isin(of_surface, number[: starts[-1]])
+        lost.append(np.concatenate([*fitting, own[0][:0]])[astray])
+    if off or any(map(len, lost)):
+        _check_lost(contents, surface, lost, off, bodies)
+    return masks
 
 
 def _check_lost(
-    contents: MeshContents, surface: Named, lost: np.ndarray, off: int, bodies: list[Named]
+    contents: MeshContents, surface: Named, lost: list[np.ndarray], off: int, bodies: list[Named]
 ) -> None:
-    """Reject facets off all boundaries; those of further bodies in the file are ignored."""
-    further = [np.empty((0, lost.shape[1]), dtype=np.int64)]
+    """Reject facets off all boundaries, those of each kind and `off` ones of other kinds.
+
+    Facets of further bodies in the file are ignored.
+    """
+    left = [nodes[~_on_others(contents, nodes, bodies)] for nodes in lost]
+    count = sum(map(len, left)) + off
+    if count:
+        where = "" if off else f", one {at(contents.points[next(filter(len, left))[0]])}"
+        raise CaseError(
+            f"{surface.key}: {count} facets of {surface.in_file!r} are not on the boundary of any "
+            f"body{where}"
+        )
+
+
+def _on_others(contents: MeshContents, corners: np.ndarray, bodies: list[Named]) -> np.ndarray:
+    """Mask of facets, given by corners, on the boundary of further bodies in the file."""
+    further = [corners[:0]]
     for block in contents.blocks:
         kind = TYPES[3].get(block.corners) if block.dim == 3 else None
-        if kind is not None and FACETS[kind] == {3: "triangle", 4: "quadrilateral"}[lost.shape[1]]:
+        if kind is not None and FACETS[kind] == _FACET_TYPES[corners.shape[1]]:
             used = np.concatenate([body.members(block) for body in bodies])
             rest = np.delete(block.nodes[:, : block.corners], used, axis=0)
             further.append(boundary(kind, 1, rest))
     known = np.concatenate(further)
-    number, _ = numbered(np.concatenate([known, lost]))
-    left = ~np.isin(number[len(known) :], number[: len(known)])
-    if left.any() or off:
-        where = "" if off else f", one {at(contents.points[lost[np.argmax(left)]])}"
-        raise CaseError(
-            f"{surface.key}: {left.sum() + off} facets of {surface.in_file!r} are not on the "
-            f"boundary of any body{where}"
-        )
+    number, _ = numbered(np.concatenate([known, corners]))
+    return np.isin(number[len(known) :], number[: len(known)])
 
 
 def _on_lines(

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...errors import CaseError, note
+from ..mesh.mixed import AnyMesh, block_with
 from ..mesh.nodes import shape_functions
 from ..mesh.tagged import TaggedMesh
-from .mesh_checks import length, whole_bodies
+from .mesh_checks import length, points_of, whole_bodies
 from .solid_pairs import compared_solids
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ class _Faces:
     body: str
 
 
-def check_pair(mesh: TaggedMesh, case: Case) -> None:
+def check_pair(mesh: AnyMesh, case: Case) -> None:
     """Check the relative position of both bodies, and their compression by the load.
 
     Raises
@@ -118,13 +119,10 @@ def _check_pressure(case: Case, faces: _Faces) -> None:
         )
 
 
-def _compared(mesh: TaggedMesh, case: Case) -> _Faces:
+def _compared(mesh: AnyMesh, case: Case) -> _Faces:
     """Compare the contact faces along the load direction, -y in a section and -z in space."""
     geometry = case.geometry
-    heights = {
-        name: float(np.ptp(mesh.points[np.unique(mesh.cells[mesh.cell_tags == tag]), -1]))
-        for tag, name in enumerate(mesh.bodies, start=1)
-    }
+    heights = {name: float(np.ptp(points_of(mesh, name)[:, -1])) for name in mesh.bodies}
     body = min(heights, key=heights.__getitem__)
     if case.model == "3d":
         found = compared_solids(mesh, geometry)
@@ -138,9 +136,9 @@ def _compared(mesh: TaggedMesh, case: Case) -> _Faces:
     return _Faces(gap, "", area, f"along the whole {length(end - start)}", heights[body], body)
 
 
-def _gap(mesh: TaggedMesh, geometry: Geometry) -> tuple[float, tuple[float, float]]:
+def _gap(mesh: AnyMesh, geometry: Geometry) -> tuple[float, tuple[float, float]]:
     """Smallest gap between the contact faces of a section, and their common range of x [m]."""
-    upper, lower = (_pieces(mesh, name) for name in geometry.contact)
+    upper, lower = (_pieces(block_with(mesh, name), name) for name in geometry.contact)
     down, up = upper[_normals(upper)[:, 1] < -_FACING], lower[_normals(lower)[:, 1] > _FACING]
     for facing, name, way in ((down, geometry.contact[0], "down"), (up, geometry.contact[1], "up")):
         if not len(facing):

@@ -10,8 +10,8 @@ import scipy
 from ...case.tables.geometry import Geometry
 from ...errors import CaseError
 from ...lagrange import gauss
+from ..mesh.mixed import AnyMesh, block_with
 from ..mesh.nodes import reference_nodes, shape_functions, slopes
-from ..mesh.tagged import TaggedMesh
 from .solid_checks import at
 
 _TRIANGLES = {
@@ -51,7 +51,7 @@ class SolidFaces:
     area: float
 
 
-def compared_solids(mesh: TaggedMesh, geometry: Geometry) -> SolidFaces:
+def compared_solids(mesh: AnyMesh, geometry: Geometry) -> SolidFaces:
     """Compare the contact faces of two bodies along the load direction.
 
     Raises
@@ -87,8 +87,9 @@ def compared_solids(mesh: TaggedMesh, geometry: Geometry) -> SolidFaces:
     return SolidFaces(float(gaps[closest]), where, area)
 
 
-def projected_area(mesh: TaggedMesh, surface: str) -> float:
-    """Area of a surface projected along z, exact for its curved facets [m²]."""
+def projected_area(mesh: AnyMesh, surface: str) -> float:
+    """Area of a contact face projected along z, exact for its curved facets [m²]."""
+    mesh = block_with(mesh, surface)
     kind, order = mesh.facet_type, mesh.order
     points, weights = gauss(2 * order, kind)
     tangents = slopes(kind, order, points)
@@ -96,8 +97,9 @@ def projected_area(mesh: TaggedMesh, surface: str) -> float:
     return float(abs(np.sum(_cross(s, t) @ weights)))
 
 
-def _triangles(mesh: TaggedMesh, surface: str) -> np.ndarray:
-    """Small triangles of a surface, with outward normals, shape (n, 3, 3) [m]."""
+def _triangles(mesh: AnyMesh, surface: str) -> np.ndarray:
+    """Small triangles of a contact face, with outward normals, shape (n, 3, 3) [m]."""
+    mesh = block_with(mesh, surface)
     kind, order = mesh.facet_type, min(mesh.order, 2)
     values = shape_functions(kind, mesh.order, reference_nodes(kind, order))
     points = np.einsum("qk,fki->fqi", values, mesh.points[mesh.facets_of(surface)])

@@ -6,9 +6,10 @@ import numpy as np
 
 from ...case.tables.geometry import Geometry
 from ...errors import CaseError, note
+from ..mesh.mixed import AnyMesh, block_of, block_with
 from ..mesh.nodes import boundary, components, meeting, numbered
 from ..mesh.tagged import TaggedMesh
-from .mesh_checks import LEVEL, length, whole_bodies
+from .mesh_checks import LEVEL, has_any, length, on_surface, whole_bodies
 from .solid_checks import CORNERS, at, node_links
 
 _FLUSH = 0.95
@@ -17,7 +18,7 @@ _PLANES = {"symmetry": 0, "rollers": 1}
 """Keys of surfaces on planes, and the coordinate that is constant there."""
 
 
-def check_solid_mesh(mesh: TaggedMesh, geometry: Geometry) -> None:
+def check_solid_mesh(mesh: AnyMesh, geometry: Geometry) -> None:
     """Check the named bodies and surfaces of a mesh; note holes in contact faces.
 
     Raises
@@ -27,11 +28,12 @@ def check_solid_mesh(mesh: TaggedMesh, geometry: Geometry) -> None:
         surface of symmetry or on rollers does not lie in a plane.
     """
     mesh = whole_bodies(mesh, geometry)
-    _check_shared_facets(mesh)
+    for block in mesh.blocks:
+        _check_shared_facets(block)
     for index, surface in enumerate(geometry.contact):
-        _check_surface(mesh, surface, index)
+        _check_surface(block_with(mesh, surface), surface, index)
     for body, surface in zip(geometry.bodies, (geometry.held, geometry.fixed), strict=True):
-        _check_pieces_held(mesh, body, surface)
+        _check_pieces_held(block_of(mesh, body), body, surface)
     for key, axis in _PLANES.items():
         if getattr(geometry, key):
             _check_planes(mesh, key, getattr(geometry, key), axis)
@@ -140,26 +142,25 @@ def _check_pieces_held(mesh: TaggedMesh, body: str, surface: str) -> None:
         note(f"geometry.path: {body!r} has {len(pieces)} pieces, all held by {surface!r}")
 
 
-def _check_planes(mesh: TaggedMesh, key: str, names: tuple[str, ...], axis: int) -> None:
+def _check_planes(mesh: AnyMesh, key: str, names: tuple[str, ...], axis: int) -> None:
     """Check that surfaces lie in planes x or y = const, with the bodies on one side of each."""
-    letter, size = "xy"[axis], np.ptp(mesh.points, axis=0).max()
-    on_planes = [np.unique(facet_corners(mesh, mesh.facets_of(name))) for name in names]
-    for name, nodes in zip(names, on_planes, strict=True):
-        level = mesh.points[nodes, axis]
+    points = mesh.points
+    letter, size = "xy"[axis], np.ptp(points, axis=0).max()
+    for name in names:
+        level = on_surface(mesh, name)[:, axis]
         if np.ptp(level) > LEVEL * size:
             raise CaseError(
                 f"geometry.{key}: {name!r} does not lie in a plane {letter} = const; it ranges from"
                 f" {letter} = {level.min():.6g} to {level.max():.6g} m"
             )
-        beyond = mesh.points[:, axis] - level.mean()
+        beyond = points[:, axis] - level.mean()
         if min(beyond.max(), -beyond.min()) > LEVEL * size:
             raise CaseError(
                 f"geometry.{key}: the bodies lie on both sides of the plane of {name!r}, "
                 f"{letter} = {level.mean():.6g} m"
             )
-    nodes = np.concatenate(on_planes)
-    for tag, body in enumerate(mesh.bodies, start=1):
-        if not np.isin(mesh.cells[mesh.cell_tags == tag], nodes).any():
+    for body in mesh.bodies:
+        if not has_any(mesh, body, names):
             raise CaseError(
                 f"geometry.{key}: no surface of {body!r} is listed; each body needs one"
             )

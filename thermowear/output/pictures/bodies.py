@@ -94,13 +94,16 @@ class BodySection:
 def read_section(path: Path) -> BodySection:
     """Read the file of the fields of 2D bodies."""
     mesh = meshio.read(path)
-    block, body = mesh.cells[0], mesh.cell_data["body"][0]
-    corners = np.array(_CORNERS[block.type])
+    corners = [np.array(_CORNERS[block.type]) for block in mesh.cells]
+    divided = [
+        block.data[:, of].reshape(-1, 3) for block, of in zip(mesh.cells, corners, strict=True)
+    ]
+    bodies = zip(mesh.cell_data["body"], corners, strict=True)
     return BodySection(
         points=1e3 * mesh.points[:, :2],
         displacement=1e3 * mesh.point_data["displacement_m"][:, :2],
-        triangles=block.data[:, corners].reshape(-1, 3),
-        body=np.repeat(body, len(corners)),
+        triangles=np.concatenate(divided),
+        body=np.concatenate([np.repeat(body, len(of)) for body, of in bodies]),
         fields={
             name: FIELDS[name].drawn(mesh.point_data[FIELDS[name].header])
             for name in ("temperature", "von_mises")

@@ -21,7 +21,7 @@ from ...case.tables.tabulated import (
 from ...case.tables.wear import BodyWearTable
 from ...case.values.section import Section
 from ...errors import CaseError
-from ...geometry.mesh.tagged import TaggedMesh
+from ...geometry.mesh.mixed import AnyMesh
 from ...laws.coefficients import Multipliers
 from ...laws.distribution import Distribution, InPlace
 from ...laws.interfaces import Law
@@ -79,7 +79,7 @@ class CaseMeshes:
     def path(self) -> str | None:
         return self.geometry.mesh_files
 
-    def mesh(self, zone: Zone | None) -> TaggedMesh:
+    def mesh(self, zone: Zone | None) -> AnyMesh:
         return self.case.tagged_mesh(zone)
 
     def expected_zone(

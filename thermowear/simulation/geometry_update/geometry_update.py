@@ -13,7 +13,8 @@ from ...contact.search.face import Surface
 from ...contact.search.refinement import Rule
 from ...contact.wear.worn_face import WornFace, nodes_of
 from ...errors import CaseError, ComputationError
-from ...geometry.mesh.tagged import TaggedMesh, scaled_jacobians
+from ...geometry.mesh.mixed import AnyMesh, MixedMesh, block_of, exchanged, placed, rows_of
+from ...geometry.mesh.tagged import TaggedMesh
 from ...geometry.moving.moved import nodes_at
 from ...geometry.moving.new_face import NewFace
 from ...laws.motions import combined
@@ -25,11 +26,12 @@ from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..system.worn_geometry import WornGeometry, along
-from .moving_faces import MovingFaces, gap_of_initial_shape, movable_body
+from .moving_faces import MovingFaces, gap_of_initial_shape, movable_body, worst_cell
 from .remesh import FLOOR, carrying_error, improved, on_new_faces
 
 serialisable(WornGeometry)
 serialisable(TaggedMesh)
+serialisable(MixedMesh)
 serialisable(NewFace)
 serialisable(Rule)
 
@@ -203,7 +205,7 @@ def _followed(
     faces: dict[int, WornFace],
     offsets: dict[int, np.ndarray],
     volumes: np.ndarray,
-) -> tuple[TaggedMesh, np.ndarray]:
+) -> tuple[AnyMesh, np.ndarray]:
     """Moved mesh, and volumes lost (2,). Every rank calls.
 
     Displacements of the faces are scaled slightly so that the meshes lose the worn volumes: the
@@ -214,22 +216,23 @@ def _followed(
         lost, moved = np.zeros(2), np.zeros_like(worn.mesh.points)
         for index, face in faces.items():
             body, part = movable_body(system, worn.mesh, index), 1.0
+            own = rows_of(worn.mesh, block_of(worn.mesh, *system.model.bodies[index].parts))
             for _ in range(_ITERATIONS):
                 outline = body.outlined(part * face.displacement(offsets[index]))
                 lost[index] = body.lost(outline, system.elastic.kinematics.area_factor)
                 if abs(lost[index] - volumes[index]) <= _TOLERANCE * abs(volumes[index]):
                     break
                 part *= volumes[index] / lost[index]
-            moved += outline
+            moved[own] += outline
         return moved, lost
 
     moved, lost = on_root(system.comm, outlined)
-    return replace(worn.mesh, points=worn.mesh.points + extended(system.bodies, moved)), lost
+    return placed(worn.mesh, worn.mesh.points + extended(system.bodies, moved)), lost
 
 
 def _remeshed(
-    system: System, worn: WornGeometry, mesh: TaggedMesh, bodies: list[int]
-) -> tuple[TaggedMesh, float, dict[int, NewFace]]:
+    system: System, worn: WornGeometry, mesh: AnyMesh, bodies: list[int]
+) -> tuple[AnyMesh, float, dict[int, NewFace]]:
     """Mesh with distorted bodies of a section remeshed, its quality, and the new faces.
 
     The quality is the smallest scaled Jacobian.
@@ -240,12 +243,14 @@ def _remeshed(
         parts, face = system.model.bodies[index].parts, system.pairing.sides[index].face
         if isinstance(face, Surface):
             continue
-        places = moved.points[nodes_at(worn.mesh, parts, nodes_of(face))]
-        nodes = nodes_at(mesh, parts, places)  # remeshing of another body renumbers them
+        before, after, block = (block_of(each, *parts) for each in (worn.mesh, moved, mesh))
+        places = after.points[nodes_at(before, parts, nodes_of(face))]
+        nodes = nodes_at(block, parts, places)  # remeshing of another body renumbers them
         wanted = worn.sizes[index], system.elastic.kinematics.area_factor, worn.best[index]
-        mesh, new = improved(mesh, parts, nodes, *wanted)
+        improved_block, new = improved(block, parts, nodes, *wanted)
+        mesh = exchanged(mesh, block, improved_block)
         renewed |= {} if new is None else {index: new}
-    return mesh, float(scaled_jacobians(mesh).min()), renewed
+    return mesh, worst_cell(mesh), renewed
 
 
 def _carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.ndarray, float]:

@@ -20,7 +20,9 @@ from ...contact.wear.worn_face import (
     node_normals,
     nodes_of,
 )
-from ...geometry.mesh.tagged import TaggedMesh, quality, scaled_jacobians
+from ...errors import ComputationError
+from ...geometry.mesh.mixed import AnyMesh, block_of
+from ...geometry.mesh.tagged import quality, scaled_jacobians
 from ...geometry.moving.moved import MovableBody
 from ...geometry.moving.moved_solid import MovableSolid
 from ...laws.distribution import InPlace
@@ -97,7 +99,7 @@ class MovingFaces:
 def _unworn(system: System, bodies: list[int]) -> WornGeometry:
     """Geometry before its first update."""
     pairing, comm = system.pairing, system.comm
-    mesh, paths = on_root(comm, lambda: _node_paths(system))
+    mesh, paths = on_root(comm, lambda: _node_paths(system, bodies))
     directions = tuple(path.directions for path in paths)
     zeros = np.zeros(3)
     return WornGeometry(
@@ -105,14 +107,16 @@ def _unworn(system: System, bodies: list[int]) -> WornGeometry:
         directions=directions,
         held=tuple(path.held for path in paths),
         sizes=tuple(side.face.sizes for side in pairing.sides),
-        best=np.array([quality(mesh, body.parts) for body in system.model.bodies]),
+        best=np.array(
+            [quality(block_of(mesh, *body.parts), body.parts) for body in system.model.bodies]
+        ),
         at=along(pairing),
         depth=np.zeros((2, len(pairing.weights))),
         missing_shape=pairing.gap - _along_directions(pairing, directions, bodies)[1],
         holder=(zeros, zeros),
         lost=np.zeros(2),
         updates=0,
-        quality=float(scaled_jacobians(mesh).min()),
+        quality=worst_cell(mesh),
         volume_error=0.0,
         pieces=pairing.pieces if isinstance(pairing.sides[0].face, Surface) else None,
     )
@@ -145,22 +149,49 @@ def _along_directions(
     return replace(pairing, sides=(first, replace(second, facet=facet, t=t))), gap
 
 
-def _node_paths(system: System) -> tuple[TaggedMesh, list[Paths]]:
+def worst_cell(mesh: AnyMesh) -> float:
+    """Smallest scaled Jacobian of the cells of a mesh."""
+    return min(float(scaled_jacobians(block).min()) for block in mesh.blocks)
+
+
+def _node_paths(system: System, bodies: list[int]) -> tuple[AnyMesh, list[Paths]]:
     """Unworn mesh, and the paths of the nodes of its faces."""
     mesh = system.model.meshes.mesh(system.zone)
     paths = []
     for index, side in enumerate(system.pairing.sides):
+        normals = node_normals(side.face)
+        if index not in bodies and not _can_move(system, mesh, index):
+            paths.append(Paths(normals, np.zeros(len(normals), dtype=bool)))
+            continue
         body = movable_body(system, mesh, index)
-        paths.append(Paths(*body.motion_paths(node_normals(side.face))))
+        paths.append(Paths(*body.motion_paths(normals)))
     return mesh, paths
 
 
-def movable_body(system: System, mesh: TaggedMesh, index: int) -> MovableBody | MovableSolid:
-    """Movable body of the mesh of a system, by its index."""
-    face, parts = system.pairing.sides[index].face, system.model.bodies[index].parts
+def _can_move(system: System, mesh: AnyMesh, index: int) -> bool:
+    """True for bodies of a section, and of hexahedra."""
+    return block_of(mesh, *system.model.bodies[index].parts).cell_type != "tetrahedron"
+
+
+def movable_body(system: System, mesh: AnyMesh, index: int) -> MovableBody | MovableSolid:
+    """Movable body of the mesh of a system, by its index, in its block of the mesh.
+
+    Raises
+    ------
+    ComputationError
+        If it has tetrahedra.
+    """
+    face, body = system.pairing.sides[index].face, system.model.bodies[index]
+    if not _can_move(system, mesh, index):
+        raise ComputationError(
+            f"geometry update: the wear of {body.name!r} has reached the limit of wear.update, and "
+            "meshes of tetrahedra cannot be moved; mesh this body with hexahedra, or keep the wear "
+            'in the gap: wear.update = "never"'
+        )
+    block = block_of(mesh, *body.parts)
     if isinstance(face, Surface):
-        return MovableSolid(mesh, parts, nodes_of(face), serial_extension)
-    return MovableBody(mesh, parts, nodes_of(face))
+        return MovableSolid(block, body.parts, nodes_of(face), serial_extension)
+    return MovableBody(block, body.parts, nodes_of(face))
 
 
 def smoothed_wear(problem: InterfaceProblem, state: InterfaceState, time: float) -> np.ndarray:

@@ -12,6 +12,7 @@ from ...bulk.mesh_motion import serial_extension
 from ...contact.search.face import Face
 from ...contact.search.pairing import PairedFace, Pairing
 from ...errors import ComputationError
+from ...geometry.mesh.mixed import block_of
 from ...geometry.mesh.tagged import TaggedMesh, quality
 from ...geometry.moving.new_face import NewFace
 from ...geometry.moving.remeshed import meshed_anew
@@ -76,7 +77,8 @@ def on_new_faces(worn: WornGeometry, system: System, faces: dict[int, NewFace]) 
         held[index] = np.zeros(len(carried), dtype=bool)
         held[index][[0, -1]] = worn.held[index][[0, -1]]
         sizes[index] = new.sizes
-        best[index] = quality(worn.mesh, bodies[index].parts)
+        parts = bodies[index].parts
+        best[index] = quality(block_of(worn.mesh, *parts), parts)
     return replace(
         worn,
         directions=tuple(directions),

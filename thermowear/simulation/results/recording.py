@@ -16,7 +16,15 @@ from ...bulk.heat.varying import straining_rises
 from ...compat import evaluate
 from ...contact.wear.implicit_step import WearRates
 from ...laws.motions import RigidMotion, combined
-from ...results import BodyFields, FrictionInterface, InterfaceFields, Profile, WornTrack
+from ...results import (
+    AnyFields,
+    BodyFields,
+    FrictionInterface,
+    InterfaceFields,
+    MixedFields,
+    Profile,
+    WornTrack,
+)
 from ..interface.body_state import BodyState, ContactState, body_state
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
@@ -178,7 +186,7 @@ def along_load(system: System) -> np.ndarray:
     return np.where(along > _LEAST_COSINE, along, np.nan)
 
 
-def sample(snapshot: Snapshot) -> BodyFields | None:
+def sample(snapshot: Snapshot) -> AnyFields | None:
     """Sample displacement (holder's motion included), temperature and von Mises stress.
 
     Body 1 is drawn at its position of the last mesh motion to the worn face: a body shortened by
@@ -189,8 +197,6 @@ def sample(snapshot: Snapshot) -> BodyFields | None:
     system, state, motion = snapshot.system, snapshot.bodies, snapshot.motion
     elastic, thermal, heated = system.elastic, system.thermal, state.temperatures
     n = divisions(system.bodies, max(system.model.discretisation.degree, 2))
-    kind = system.bodies.each[0].mesh.topology.cell_name()
-    grid, pieces = GRIDS[kind](n)
     u = elastic.spaces.functions(with_holder(system, state.displacement, motion), "u")
     du = elastic.spaces.functions(state.displacement, "u")
     parts = zip(elastic.each, u, du, strict=True)
@@ -203,20 +209,40 @@ def sample(snapshot: Snapshot) -> BodyFields | None:
         wanted = [[shown, _von_mises(b.stress(d, T)), rise] for b, shown, d, T, rise in hot]
     found = system.bodies.in_file_order(
         [
-            (_body_of_cells(system, body), *_evaluated(body.mesh, grid, fields))
+            (
+                _body_of_cells(system, body),
+                *_evaluated(body.mesh, GRIDS[body.cell_type](n)[0], fields),
+            )
             for body, fields in zip(system.bodies.each, wanted, strict=True)
         ]
     )
     if found is None:
         return None
-    body, points, displacement, mises, *temperature = found
+    kinds = {body.block: body.cell_type for body in system.bodies.each}
+    blocks = [
+        _fields(system, GRIDS[kinds[number]](n)[1], *columns)
+        for number, columns in zip(sorted(kinds), found, strict=True)
+    ]
+    return blocks[0] if len(blocks) == 1 else MixedFields(tuple(blocks))
+
+
+def _fields(
+    system: System,
+    pieces: np.ndarray,
+    body: np.ndarray,
+    points: np.ndarray,
+    displacement: np.ndarray,
+    mises: np.ndarray,
+    rise: np.ndarray | None = None,
+) -> BodyFields:
+    """Fields in the cells of one type, from samples of shape (n_cells, n_points, components)."""
     if system.worn is not None:
         placed = RigidMotion(*system.worn.holder, np.zeros(3)).at(points[body == 1])
         points[body == 1] += placed
         displacement[body == 1] -= placed
     absolute = None
-    if temperature and thermal is not None:
-        absolute = temperature[0][..., 0] + thermal.ambient
+    if rise is not None and system.thermal is not None:
+        absolute = rise[..., 0] + system.thermal.ambient
     return BodyFields(points, pieces, body, displacement, absolute, mises[..., 0])
 
 

@@ -10,7 +10,7 @@ import scipy
 from ...contact.search.face import Surface
 from ...contact.search.pairing import Pairing
 from ...contact.search.refinement import Rule
-from ...geometry.mesh.tagged import TaggedMesh
+from ...geometry.mesh.mixed import AnyMesh
 from ...geometry.moving.new_face import NewFace
 
 _SAME = 1e-9
@@ -22,7 +22,7 @@ class WornGeometry:
 
     Attributes
     ----------
-    mesh : TaggedMesh
+    mesh : TaggedMesh or MixedMesh
         Present mesh.
     directions : tuple of ndarray, shape (n_nodes, 2)
         Motion directions of the nodes of both faces, see `contact.wear.worn_face.Paths`.
@@ -65,7 +65,7 @@ class WornGeometry:
         Largest transfer error so far of depths to remeshed faces, relative to the largest depth.
     """
 
-    mesh: TaggedMesh
+    mesh: AnyMesh
     directions: tuple[np.ndarray, ...]
     held: tuple[np.ndarray, ...]
     sizes: tuple[np.ndarray, ...]

@@ -81,8 +81,8 @@ def surface(result: Result) -> tuple[np.ndarray, np.ndarray]:
 
 def _strip(result: Result) -> tuple[np.ndarray, np.ndarray]:
     """Points of the strip, and temperature rise there [K]."""
-    fields = result.fields
-    assert fields is not None
+    assert result.fields is not None
+    (fields,) = result.fields.blocks
     assert fields.temperature is not None
     own = fields.body == 2
     return fields.points[own], fields.temperature[own] - AMBIENT

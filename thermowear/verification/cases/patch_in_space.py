@@ -10,9 +10,9 @@ import numpy as np
 
 from ...case import load
 from ...case.tables.geometry import Geometry
+from ...geometry.mesh.mixed import joined
+from ...geometry.mesh.tagged import TaggedMesh
 from ...geometry.meshing.cells import (
-    Claim,
-    MeshedBody,
     divided_hexahedra,
     level,
     mesh_lattice,
@@ -27,6 +27,9 @@ FACES = (("matching", (3, 3)), ("not matching", (2, 3)))
 """Label, and number of elements along x of each body; along y one fewer."""
 DISCRETISATIONS = ((1, 1), (1, 2), (2, 2))
 """Orders of the cells, and degrees of the displacement."""
+MIXED = (("tetrahedra", "hexahedra"), ("hexahedra", "tetrahedra"))
+MIXED_ORDERS = ((1, 1), (1, 2), (2, 2))
+"""Cells of the upper and lower body where they differ, and their orders."""
 
 
 class PatchInSpace(Geometry):
@@ -36,9 +39,10 @@ class PatchInSpace(Geometry):
     ----------
     columns : tuple of int
         Number of elements along x of each body.
-    order : int
-        Order of the cells, curved inside the blocks and along matching faces.
-    tetrahedra : bool
+    orders : tuple of int
+        Order of the cells of each body, curved inside the blocks and along matching faces.
+    tetrahedra : tuple of bool
+        For each body, False for hexahedra.
     """
 
     bodies = ("upper", "lower")
@@ -50,24 +54,29 @@ class PatchInSpace(Geometry):
 
     type: str = "patch-3d"
     columns: tuple[int, int]
-    order: int
-    tetrahedra: bool
+    orders: tuple[int, int]
+    tetrahedra: tuple[bool, bool]
 
     def contact_area(self) -> float:
         return SIZE[0] * SIZE[1]
 
     def build(self, mesh, zone=None):
-        spans = {"upper": (0.0, HEIGHTS[0]), "lower": (-HEIGHTS[1], 0.0)}
-        bodies: dict[str, MeshedBody] = {}
-        claims: dict[str, Claim] = {}
-        for (name, span), n in zip(spans.items(), self.columns, strict=True):
-            limits = (0.0, SIZE[0], n + 1), (0.0, SIZE[1], n), (*span, 3)
-            body = mesh_lattice([np.linspace(*ends) for ends in limits], self.order)
-            bodies[name] = divided_hexahedra(body, self.order) if self.tetrahedra else body
-            claims |= {f"{name}_face": level(2, 0.0), f"{name}_end": level(2, sum(span))}
-        tagged = tagged_bodies(bodies, claims)
-        tagged.points[:] = _distorted(tagged.points, len(set(self.columns)) == 1)
-        return replace(tagged, cell_type="tetrahedron") if self.tetrahedra else tagged
+        alike = len(set(zip(self.columns, self.orders, self.tetrahedra, strict=True))) == 1
+        return joined([self._block(body, alike) for body in (0, 1)])
+
+    def _block(self, body: int, on_face: bool) -> TaggedMesh:
+        """Mesh of one of the bodies, distorted also along the contact face on request."""
+        name, n, order = self.bodies[body], self.columns[body], self.orders[body]
+        span = ((0.0, HEIGHTS[0]), (-HEIGHTS[1], 0.0))[body]
+        limits = (0.0, SIZE[0], n + 1), (0.0, SIZE[1], n), (*span, 3)
+        meshed = mesh_lattice([np.linspace(*ends) for ends in limits], order)
+        kind = "hexahedron"
+        if self.tetrahedra[body]:
+            meshed, kind = divided_hexahedra(meshed, order), "tetrahedron"
+        claims = {f"{name}_face": level(2, 0.0), f"{name}_end": level(2, sum(span))}
+        tagged = tagged_bodies({name: meshed}, claims)
+        tagged.points[:] = _distorted(tagged.points, on_face)
+        return replace(tagged, cell_type=kind)
 
 
 def _distorted(points: np.ndarray, on_faces: bool) -> np.ndarray:
@@ -85,27 +94,41 @@ def patch_3d() -> Iterator[Check]:
     for method, cells, (order, degree), (faces, columns) in itertools.product(
         METHODS, ("hexahedra", "tetrahedra"), DISCRETISATIONS, FACES
     ):
-        stiff = {"penalty": f"{PENALTY} Pa/m"} if method == "penalty" else {}
-        materials = zip(PatchInSpace.bodies, MODULI, strict=True)
-        tables = {
-            "title": "contact patch test in space",
-            "model": "3d",
-            "geometry": PatchInSpace(
-                columns=columns, order=order, tetrahedra=cells == "tetrahedra"
-            ),
-            "mesh": {"degree": degree},
-            "bodies": {
-                name: {"young_modulus": f"{E} Pa", "poisson_ratio": 0.0} for name, E in materials
-            },
-            "load": {"mean_pressure": f"{PRESSURE} Pa"},
-            "contact": {"method": method} | stiff,
-            "analysis": {"type": "initial"},
-        }
-        result = computed(load(tables))
+        geometry = PatchInSpace(
+            columns=columns, orders=(order, order), tetrahedra=(cells == "tetrahedra",) * 2
+        )
         note = f"{method}, {cells} of order {order}, degree {degree}, {faces}"
-        quantity = f"pressure at the point of largest deviation, {note} [Pa]"
-        yield compare_worst(quantity, result.interface.pressure, PRESSURE, 1e-10, SOURCE)
-        shortened = PRESSURE * sum(h / E for h, E in zip(HEIGHTS, MODULI, strict=True))
-        shortened += PRESSURE / PENALTY if stiff else 0.0
-        approach = result.summary["approach_m"]
-        yield compare(f"approach, {note} [m]", approach, shortened, 1e-10, SOURCE)
+        yield from _checks(geometry, method, degree, note)
+    for method, (upper, lower), orders in itertools.product(METHODS, MIXED, MIXED_ORDERS):
+        geometry = PatchInSpace(
+            columns=(4, 3),
+            orders=orders,
+            tetrahedra=(upper == "tetrahedra", lower == "tetrahedra"),
+        )
+        cells = f"{upper} of order {orders[0]} on {lower} of order {orders[1]}"
+        yield from _checks(geometry, method, max(orders), f"{method}, {cells}")
+
+
+def _checks(geometry: PatchInSpace, method: str, degree: int, note: str) -> Iterator[Check]:
+    """Pressure and approach of two blocks by a method."""
+    stiff = {"penalty": f"{PENALTY} Pa/m"} if method == "penalty" else {}
+    materials = zip(PatchInSpace.bodies, MODULI, strict=True)
+    tables = {
+        "title": "contact patch test in space",
+        "model": "3d",
+        "geometry": geometry,
+        "mesh": {"degree": degree},
+        "bodies": {
+            name: {"young_modulus": f"{E} Pa", "poisson_ratio": 0.0} for name, E in materials
+        },
+        "load": {"mean_pressure": f"{PRESSURE} Pa"},
+        "contact": {"method": method} | stiff,
+        "analysis": {"type": "initial"},
+    }
+    result = computed(load(tables))
+    quantity = f"pressure at the point of largest deviation, {note} [Pa]"
+    yield compare_worst(quantity, result.interface.pressure, PRESSURE, 1e-10, SOURCE)
+    shortened = PRESSURE * sum(h / E for h, E in zip(HEIGHTS, MODULI, strict=True))
+    shortened += PRESSURE / PENALTY if stiff else 0.0
+    approach = result.summary["approach_m"]
+    yield compare(f"approach, {note} [m]", approach, shortened, 1e-10, SOURCE)

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, Spatial
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.condensation import bath_matrix, condense_heat
 from thermowear.contact.operators.exchange_update import ReferenceExchange
 from thermowear.contact.operators.heat_exchange import baseline_response

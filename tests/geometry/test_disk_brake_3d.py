@@ -2,15 +2,16 @@
 
 import math
 
-import numpy as np
-import pytest
 from mpi4py import MPI
 
+import numpy as np
+import pytest
+
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import lagrange_space
 from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.even_paths import EvenPaths
 from thermowear.bulk.kinematics import Spatial
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
@@ -141,7 +142,7 @@ def test_cells_of_the_disk_are_in_rows(degree):
     mesh = built(brake(), degree)
     bodies = distribute(mesh if COMM.rank == 0 else None, COMM)
     passage = Passage(("disk",), (0.0, 0.0), 1.0, spread=True)
-    paths = EvenPaths(bodies, lagrange_space(bodies.mesh, degree), passage)
+    paths = EvenPaths(bodies, lagrange_spaces(bodies, degree), passage)
     assert paths is not None
     points = mesh.points[np.unique(mesh.cells[mesh.cell_tags == 2])]
     places = np.column_stack([np.hypot(points[:, 0], points[:, 1]), points[:, 2]])

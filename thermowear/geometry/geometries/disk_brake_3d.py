@@ -108,7 +108,7 @@ class DiskBrakeInSpace(Geometry):
     @model_validator(mode="after")
     def _nested(self):
         gap = _CLEARANCE * abs(self.pad_outer_radius - self.pad_inner_radius)
-        names = ("bore_radius", "hub_radius", "hat_radius", "pad_inner_radius")
+        names: tuple[str, ...] = ("bore_radius", "hub_radius", "hat_radius", "pad_inner_radius")
         names += ("pad_outer_radius", "disk_outer_radius")
         room = {"hat_radius": self.hat_thickness}
         for smaller, larger in pairwise(names):

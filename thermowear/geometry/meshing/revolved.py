@@ -152,7 +152,9 @@ def revolved(
     _, first = np.unique(edge, return_index=True)
     middles = points[edges[first]].mean(axis=1)
     section = np.vstack([points, middles]) if order > 1 else points
-    middle_of = np.empty((len(triangles), 3, 3), dtype=np.int64)  # of corners, or between them
+    middle_of: np.ndarray = np.empty(
+        (len(triangles), 3, 3), dtype=np.int64
+    )  # of corners, or between them
     middle_of[:, range(3), range(3)] = triangles
     for column, (i, j) in enumerate([(0, 1), (0, 2), (1, 2)]):
         number = len(points) + edge.reshape(-1, 3)[:, column]

@@ -13,7 +13,7 @@ from thermowear.verification.cases.ring_in_space import (
     in_space,
     write_ring,
 )
-from thermowear.verification.check import run_starter
+from thermowear.verification.check import along, run_starter
 
 COARSE_ENDS = 1e-3 * np.array([20, 22, 26, 34, 50, 75, 98, 112, 118, 120])
 BELOW, BETWEEN = "0.06 rad/s", "0.1 rad/s"
@@ -68,6 +68,28 @@ def test_no_equilibrium_beyond_the_critical_speed_of_hot_spots(coarse):
         in_space(coarse, STEADY, running_in(BETWEEN))
     flat = run_starter(STEADY, "analysis={type='transient', end_time='1000 s', tolerance=1e-3}")
     assert flat.history[-1].time == 1000.0
+
+
+def test_meshes_of_tetrahedra_follow_deep_wear(coarse):
+    """requirement: geometry updates as in the axisymmetric run; worn volume that of the mesh."""
+    tables = {
+        "wear": {"update": 0.02, "punch": {"coefficient": "2e-7 1/MPa", "per": "friction-stress"}},
+        "analysis": {"type": "transient", "end_time": "1500 s", "tolerance": 1e-3},
+    }
+    found = in_space(coarse, RUNNING_IN, tables)
+    flat = run_starter(
+        RUNNING_IN,
+        "wear.update=0.02",
+        "analysis={type='transient', end_time='1500 s', tolerance=1e-3}",
+    )
+    assert found.summary["geometry_updates"] == flat.summary["geometry_updates"] >= 2
+    lost = found.summary["wear_volume_1_m3"]
+    assert lost == pytest.approx(found.summary["geometry_volume_1_m3"], rel=1e-5, abs=0.0)
+    assert found.summary["geometry_volume_error"] < 1e-9
+    assert lost == pytest.approx(flat.summary["wear_volume_1_m3"] / 4, rel=5e-4, abs=0.0)
+    i = found.interface
+    known = along(flat.interface, np.hypot(i.x, i.y), flat.interface.wear_1)
+    np.testing.assert_allclose(i.wear_1, known, rtol=2e-3)
 
 
 @pytest.mark.slow

@@ -108,7 +108,7 @@ def unnamed(mesh) -> int:
 
 
 def volumes(mesh, body: str) -> np.ndarray:
-    """Volume of each hexahedron of a body, by quadrature that is exact for its polynomial [m³]."""
+    """Volume of each cell of a body in space, by quadrature exact for its polynomial [m³]."""
     order = mesh.order
     t, w = np.polynomial.legendre.leggauss(6)
     places = np.stack(np.meshgrid(*[(t + 1) / 2] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -116,7 +116,12 @@ def volumes(mesh, body: str) -> np.ndarray:
     powers = np.array(
         [(i, j, k) for i in range(order + 1) for j in range(order + 1) for k in range(order + 1)]
     )
-    nodes = reference_nodes("hexahedron", order)
+    if mesh.cell_type == "tetrahedron":
+        powers = powers[powers.sum(axis=1) <= order]
+        a, b, c = places.T  # Duffy's map of the cube
+        weights = weights * (1 - a) ** 2 * (1 - b)
+        places = np.stack([a, b * (1 - a), c * (1 - a) * (1 - b)], axis=1)
+    nodes = reference_nodes(mesh.cell_type, order)
     inverse = np.linalg.inv(np.prod(nodes[:, None] ** powers, axis=2))
     slopes = [
         powers[:, a]

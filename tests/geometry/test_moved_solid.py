@@ -16,9 +16,12 @@ HEIGHT = HEIGHTS[0]
 MAPS = {"straight": straight, "skewed": skewed, "turned": turned, "bent": bent}
 
 
-def upper(order=1, place=straight, divisions=(3, 3, 2)):
+CELLS = ["hexahedron", "tetrahedron"]
+
+
+def upper(order=1, place=straight, divisions=(3, 3, 2), cell_type="hexahedron"):
     """The upper of two boxes, the nodes of its face, and the mesh."""
-    mesh = two_solids((divisions, (2, 2, 2)), order, (place, straight))
+    mesh = two_solids((divisions, (2, 2, 2)), order, (place, straight), cell_type)
     facets = mesh.facets[mesh.facet_tags == mesh.surfaces.index("upper_face") + 1]
     face = mesh.points[np.unique(facets)]
     return MovableSolid(mesh, ("upper",), face, serial_extension), face, mesh
@@ -26,9 +29,10 @@ def upper(order=1, place=straight, divisions=(3, 3, 2)):
 
 @pytest.mark.parametrize("place", [straight, skewed, turned])
 @pytest.mark.parametrize("order", [1, 2, 3])
-def test_a_level_face_squeezes_the_body_evenly(order, place):
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_a_level_face_squeezes_the_body_evenly(order, place, cell_type):
     """Sides, edges and inner nodes alike; the other body stays."""
-    body, face, mesh = upper(order, place)
+    body, face, mesh = upper(order, place, cell_type=cell_type)
     points = followed(mesh, body.outlined(np.tile((0.0, 0.0, 5e-3), (len(face), 1))))
     above = np.unique(mesh.cells[mesh.cell_tags == 1])
     expected = mesh.points[above] + np.outer(5e-3 * (1 - mesh.points[above, 2] / HEIGHT), (0, 0, 1))
@@ -39,9 +43,10 @@ def test_a_level_face_squeezes_the_body_evenly(order, place):
 
 @pytest.mark.parametrize("order", [1, 2, 3])
 @pytest.mark.parametrize("name", MAPS)
-def test_the_volume_lost_is_that_of_the_mesh(order, name):
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_the_volume_lost_is_that_of_the_mesh(order, name, cell_type):
     """Sign and size, of a bulge into the body."""
-    body, face, mesh = upper(order, MAPS[name])
+    body, face, mesh = upper(order, MAPS[name], cell_type=cell_type)
     x, y, _ = face.T
     bulge = np.outer(2e-3 * np.sin(60 * x) * np.cos(40 * y) + 3e-3, (0, 0, 1))
     outlined = body.outlined(bulge)
@@ -52,30 +57,42 @@ def test_the_volume_lost_is_that_of_the_mesh(order, name):
     assert scaled_jacobians(after).min() > 0.5 * scaled_jacobians(mesh).min() > 0.0
 
 
-def test_the_rim_goes_along_the_sides():
-    """requirement: the rim moves along slanted sides, at corners along the edge between two."""
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_the_rim_goes_along_the_sides(cell_type):
+    """requirement: the rim moves along slanted sides, at corners along the edge between two; rows
+    of hexahedra are followed, in sides of triangles it moves normal to itself.
+    """
 
     def slanted(p):
         x, y, z = np.moveaxis(p, -1, 0)
         return np.stack([x + 0.5 * z, y - 0.25 * z, z], axis=-1)
 
-    body, face, mesh = upper(2, slanted)
+    body, face, mesh = upper(2, slanted, cell_type=cell_type)
     normals = np.tile((0.0, 0.0, -1.0), (len(face), 1))
     directions, held = body.motion_paths(normals)
     assert not held.any()
     x, y, _ = face.T
     rim = (x < 1e-9) | (x > SIZE[0] - 1e-9) | (y < 1e-9) | (y > SIZE[1] - 1e-9)
     along = -np.array((0.5, -0.25, 1.0)) / np.linalg.norm((0.5, -0.25, 1.0))
-    assert directions[rim] == pytest.approx(np.tile(along, (rim.sum(), 1)), abs=1e-12)
+    corner = rim & np.isin(x, (x.min(), x.max())) & np.isin(y, (y.min(), y.max()))
+    followed_rows = rim if cell_type == "hexahedron" else corner
+    expected = np.tile(along, (followed_rows.sum(), 1))
+    assert corner.sum() == 4
+    assert directions[followed_rows] == pytest.approx(expected, abs=1e-12)
+    if cell_type == "tetrahedron":
+        inner = rim & ~corner & (x < 1e-9)
+        normal = -np.array((0.5, 0.0, 1.0)) / np.linalg.norm((0.5, 1.0))
+        assert directions[inner] == pytest.approx(np.tile(normal, (inner.sum(), 1)), abs=1e-12)
     assert np.array_equal(directions[~rim], normals[~rim])
     points = followed(mesh, body.outlined(-4e-3 * directions))
     side = mesh.facets[mesh.facet_tags == mesh.surfaces.index("upper_low_x") + 1]
     assert points[side][..., 0] == pytest.approx(0.5 * points[side][..., 2], abs=1e-12)
 
 
-def test_a_face_within_a_level_boundary_keeps_its_rim():
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_a_face_within_a_level_boundary_keeps_its_rim(cell_type):
     """As that of a block, larger than the punch on it: its nodes where it goes on stay."""
-    mesh = two_solids()
+    mesh = two_solids(cell_type=cell_type)
     face = np.unique(mesh.facets[mesh.facet_tags == mesh.surfaces.index("lower_face") + 1])
     part = mesh.points[face][mesh.points[face, 0] < 0.7 * SIZE[0]]
     body = MovableSolid(mesh, ("lower",), part, serial_extension)

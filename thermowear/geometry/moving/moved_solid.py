@@ -28,12 +28,15 @@ from .moved import Extension, MovableFace, cells_of, nodes_at
 
 _SMOOTH = np.cos(np.radians(20.0))
 """Cosine of the largest angle between the normals of adjacent facets in one patch."""
-_INWARD = ((1, 1.0), (0, -1.0), (1, -1.0), (0, 1.0))
-"""Reference coordinate normal to each edge of a quadrilateral, and its inward sign."""
+_INWARD = {
+    "quadrilateral": np.array([(0, 1), (-1, 0), (0, -1), (1, 0)]),
+    "triangle": np.array([(0, 1), (-1, -1), (1, 0)]),
+}
+"""Directions away from each edge of a facet, in its reference coordinates."""
 
 
 class Patches:
-    """Boundary facets of a body of hexahedra, and the edges between its smooth patches.
+    """Boundary facets of a body in space, and the edges between its smooth patches.
 
     Parameters
     ----------
@@ -56,21 +59,21 @@ class Patches:
     """
 
     def __init__(self, mesh: TaggedMesh, cells: np.ndarray, face: np.ndarray):
-        self._points, self._order = mesh.points, mesh.order
+        self._points, self._order, self._kind = mesh.points, mesh.order, mesh.facet_type
         self.facets = boundary(mesh.cell_type, mesh.order, cells)
         on_face = np.logical_and.reduce(np.isin(self.facets, face), axis=1)
-        self._edges = self.facets[:, edge_nodes("quadrilateral", mesh.order)]
-        # edge number: 4 facet + local edge
+        self._edges = self.facets[:, edge_nodes(self._kind, mesh.order)]
+        sides = self._edges.shape[1]  # edge number: sides * facet + local edge
         pairs = meeting(self._edges[..., :2].reshape(-1, 2))
         one, other = np.moveaxis(self._normals(pairs), 1, 0)
         smooth = np.einsum("ei,ei->e", one, other) > _SMOOTH
-        facet = pairs // 4
+        facet = pairs // sides
         inside = ~on_face[facet].any(axis=1)
         patch = components(facet[inside & smooth], len(self.facets))
         rim = on_face[facet[:, 0]] != on_face[facet[:, 1]]
         beside = np.where(on_face[facet[:, 0]], *pairs.T[::-1])
         self._sharp, self._level = beside[rim & ~smooth], beside[rim & smooth]
-        slides = np.isin(patch, patch[self._sharp // 4]) & ~on_face
+        slides = np.isin(patch, patch[self._sharp // sides]) & ~on_face
         between = inside & (patch[facet[:, 0]] != patch[facet[:, 1]]) & slides[facet].all(axis=1)
         self.sliding = self.facets[slides]
         self.seams = self._edges.reshape(-1, mesh.order + 1)[pairs[between, 0]]
@@ -81,18 +84,33 @@ class Patches:
 
         Shapes (n,) and (n, 3); at a corner the vector runs along the seam.
         """
-        places = reference_nodes("quadrilateral", self._order)
-        local = edge_nodes("quadrilateral", self._order)
-        facet, side = np.divmod(self._sharp, 4)
-        axis, sense = (np.array(column)[side] for column in zip(*_INWARD, strict=True))
-        derivatives = slopes("quadrilateral", self._order, places)[:, axis.astype(int)]
-        at = np.take_along_axis(derivatives, local[side].T[..., None], axis=0)
-        along = np.einsum("qek,eki->eqi", at, self._points[self.facets[facet]])
-        along *= sense[:, None, None] / np.linalg.norm(along, axis=2, keepdims=True)
+        local = edge_nodes(self._kind, self._order)
+        facet, side = np.divmod(self._sharp, len(local))
+        at = slopes(self._kind, self._order, reference_nodes(self._kind, self._order))[local[side]]
+        tangents = np.einsum("eqdk,eki->eqdi", at, self._points[self.facets[facet]])
+        along = np.einsum("ed,eqdi->eqi", _INWARD[self._kind][side], tangents)
+        if self._kind == "triangle":  # normal to the edge, as rows of nodes run in all directions
+            corners = reference_nodes(self._kind, 1)
+            edge = np.einsum("ed,eqdi->eqi", (np.roll(corners, -1, 0) - corners)[side], tangents)
+            part = (along * edge).sum(axis=2) / (edge**2).sum(axis=2)
+            along -= part[..., None] * edge
+        along /= np.linalg.norm(along, axis=2, keepdims=True)
         nodes, place = np.unique(self._edges[facet, side], return_inverse=True)
         summed = np.zeros((len(nodes), 3))
         np.add.at(summed, place.ravel(), along.reshape(-1, 3))
+        for end, seams in self._seams_from(nodes):
+            summed[end] = seams
         return nodes, summed / np.linalg.norm(summed, axis=1, keepdims=True)
+
+    def _seams_from(self, nodes: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Indices of nodes (n,) at the first or last end of a seam, and tangents away from it."""
+        derivatives = slopes("interval", self._order, np.array([[0.0], [1.0]]))[:, 0]
+        tangents = np.einsum("qk,ski->qsi", derivatives, self._points[self.seams])
+        found = []
+        for end, tangent in enumerate((tangents[0], -tangents[1])):
+            starts = np.isin(self.seams[:, end], nodes) & ~np.isin(self.seams[:, 1 - end], nodes)
+            found.append((np.searchsorted(nodes, self.seams[starts, end]), tangent[starts]))
+        return found
 
     def level(self) -> np.ndarray:
         """Nodes where the boundary continues smoothly beyond the face."""
@@ -100,9 +118,10 @@ class Patches:
 
     def _normals(self, edges: np.ndarray) -> np.ndarray:
         """Outward unit normals of facets at the midpoints of edges, shape (..., 3)."""
-        facet, side = np.divmod(edges, 4)
-        middles = np.array([(0.5, 0.0), (1.0, 0.5), (0.5, 1.0), (0.0, 0.5)])
-        derivatives = slopes("quadrilateral", self._order, middles)[side]
+        corners = reference_nodes(self._kind, 1)
+        facet, side = np.divmod(edges, len(corners))
+        middles = (corners + np.roll(corners, -1, axis=0)) / 2
+        derivatives = slopes(self._kind, self._order, middles)[side]
         tangents = np.einsum("...dk,...ki->d...i", derivatives, self._points[self.facets[facet]])
         normals = np.cross(*tangents)
         return normals / np.linalg.norm(normals, axis=-1, keepdims=True)
@@ -114,7 +133,7 @@ class MovableSolid(MovableFace):
     Parameters
     ----------
     mesh : TaggedMesh
-        Mesh of hexahedra.
+        Mesh in space.
     parts : tuple of str
         Names of the body's parts.
     face : ndarray, shape (n, 3)
@@ -160,8 +179,8 @@ class MovableSolid(MovableFace):
         known = np.zeros(len(self._mesh.points), dtype=bool)
         known[self._patches.still] = known[self.face] = True
         found = []
-        patches = self._patches
-        for kind, cells in (("interval", patches.seams), ("quadrilateral", patches.sliding)):
+        patches, facets = self._patches, self._mesh.facet_type
+        for kind, cells in (("interval", patches.seams), (facets, patches.sliding)):
             if len(cells):
                 found.append(self._extension(self._mesh, kind, cells, known.copy()))
                 known[cells] = True

@@ -41,6 +41,9 @@ _ITERATIONS = 20
 _FADED = 0.1
 """Smallest reference pressure of a change, as a fraction of the largest so far."""
 
+_SLENDER = 0.5
+"""Smallest acceptable scaled Jacobian, as a fraction of that of the first mesh if it is slender."""
+
 
 def updated(
     problem: InterfaceProblem,
@@ -140,10 +143,11 @@ def _moved(
     mesh, quality, renewed = on_root(
         system.comm, lambda: _remeshed(system, before, mesh, list(faces))
     )
-    if not quality >= FLOOR:  # NaN for degenerate cells
+    least = _least_quality(system, before)
+    if not quality >= least:  # NaN for degenerate cells
         raise ComputationError(
             f"geometry update: cells of the worn bodies become too slanted (scaled Jacobian "
-            f"{quality:.2g}, at least {FLOOR:g}); use fewer or more even elements along the "
+            f"{quality:.2g}, at least {least:.2g}); use fewer or more even elements along the "
             'contact (mesh.elements, mesh.grading), or wear.update = "never"'
         )
     taken = np.zeros_like(depth)
@@ -170,6 +174,12 @@ def _moved(
         volume_error=error,
     )
     return (on_new_faces(worn, system, renewed), True) if renewed else (worn, False)
+
+
+def _least_quality(system: System, worn: WornGeometry) -> float:
+    """Smallest acceptable scaled Jacobian; less for slender cells in space, never remeshed."""
+    in_space = isinstance(system.pairing.sides[0].face, Surface)
+    return min(FLOOR, _SLENDER * float(worn.best.min())) if in_space else FLOOR
 
 
 def _missing_shape(system: System, before: WornGeometry, state: InterfaceState) -> np.ndarray:

@@ -59,8 +59,6 @@ HOT = {
 }
 """Running-in with friction heat, stable: perturbations round the ring grow from 0.042 rad/s."""
 _ORDER = 2
-_SLENDER = 3.0
-"""Size ratio of neighbouring rows outside the face."""
 
 
 def ring_3d() -> Iterator[Check]:
@@ -79,10 +77,10 @@ def _compared(share: float) -> Iterator[Check]:
     with tempfile.TemporaryDirectory() as place:
         path = write_ring(Path(place) / "ring.msh", FACE_ENDS, 3 if quarter else 12, not quarter)
         run = partial(in_space, path, quarter=quarter)
-        yield from _steady(run(STEADY), share)
-        yield from _running_in(run(RUNNING_IN), run_starter(RUNNING_IN), share, "")
+        yield from compared_steady(run(STEADY), share)
+        yield from compared_running_in(run(RUNNING_IN), run_starter(RUNNING_IN), share, "")
         flat = computed(load(tomllib.loads(starter_text(STEADY)) | HOT))
-        yield from _running_in(run(STEADY, HOT), flat, share, ", hot")
+        yield from compared_running_in(run(STEADY, HOT), flat, share, ", hot")
 
 
 def in_space(
@@ -110,7 +108,12 @@ def in_space(
 
 
 def write_ring(
-    path: Path, ends: np.ndarray, sectors: int, whole: bool = False, ratio: float = 2.5
+    path: Path,
+    ends: np.ndarray,
+    sectors: int,
+    whole: bool = False,
+    ratio: float = 2.5,
+    rows: int = 3,
 ) -> Path:
     """Write ring and plate, their faces with the same nodes, as tetrahedra of order 2.
 
@@ -126,11 +129,13 @@ def write_ring(
     ratio : float
         Size ratio of successive rows away from the face; the first ones are as thin as the
         narrowest on the face.
+    rows : int
+        Least number of rows over the height of a body.
     """
     first = float(np.diff(ends).min())
-    inside = ends[0] - growing(0.0, ends[0], first, 1 / _SLENDER, ends[0])[::-1]
-    outside = growing(ends[-1], PLATE, first, 1 / _SLENDER, PLATE)
-    up, down = (growing(0.0, h, first, 1 / ratio, h / 3) for h in (HEIGHT, DEPTH))
+    inside = ends[0] - growing(0.0, ends[0], first, 1 / ratio, ends[0])[::-1]
+    outside = growing(ends[-1], PLATE, first, 1 / ratio, PLATE)
+    up, down = (growing(0.0, h, first, 1 / ratio, h / rows) for h in (HEIGHT, DEPTH))
     angles = np.linspace(0.0, math.tau if whole else math.tau / 4, sectors + 1)
     bodies = {
         "punch": _turned(ends, angles, up),
@@ -182,7 +187,7 @@ def _merged_on_axis(body: MeshedBody, counts: tuple[int, int]) -> MeshedBody:
     return MeshedBody(body.points, cells, boundary("tetrahedron", _ORDER, cells))
 
 
-def _steady(found: Result, share: float) -> Iterator[Check]:
+def compared_steady(found: Result, share: float) -> Iterator[Check]:
     """Steady state, compared with the axisymmetric one at every point."""
     flat, i = run_starter(STEADY), found.interface
     heights, extent = i.shape - _along(flat, "shape", i), flat.summary["shape_range_m"]
@@ -209,7 +214,7 @@ def _steady(found: Result, share: float) -> Iterator[Check]:
         yield compare(quantity.format(part), found.summary[key], known, 1e-3, AXISYMMETRIC)
 
 
-def _running_in(found: Result, flat: Result, share: float, note: str) -> Iterator[Check]:
+def compared_running_in(found: Result, flat: Result, share: float, note: str) -> Iterator[Check]:
     """Histories at every point up to `EDGE` from the rims."""
     states, known = (
         result.outputs | {result.history[-1].time: result.interface} for result in (found, flat)

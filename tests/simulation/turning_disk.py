@@ -23,7 +23,7 @@ def turning_case(peclet, elements=6, advection="resolved", **changes):
     speed = peclet * CONDUCTIVITY / CAPACITY / LENGTH
     case = {
         "geometry.half": True,
-        "mesh": {"degree": 2, "elements": elements, "grading": 0.7},
+        "mesh": {"degree": 2, "elements": elements, "grading": 0.7, "solver": "direct"},
         "load": {"force": f"{POWER / FRICTION / speed} N"},
         "motion": {"angular_velocity": f"{speed / MEAN} rad/s"},
         "heat.power": None,

@@ -3,11 +3,11 @@
     python3 -m tests.benchmarks.large_steady [--model blocks | brake] [--sizes 60 150 400 1000 4000]
         [--solver auto] [--conductance 2e4 | perfect] [--cells tetrahedron]
 
-``blocks``: a block of friction material slides on a metal block: quadratic tetrahedra whose faces do
-not match unless ``--matching`` is given. ``brake``: a pad with back plate on half of a turning disk
-with hat, which carries the heat along (starter ``disk-brake-3d``); ``--peclet`` is ``v L/κ`` with the
-length L of the pad. Each size (thousands of displacement unknowns) runs in a process of its own, so
-that the largest memory is that of the size.
+``blocks``: a block of friction material slides on a metal block: quadratic tetrahedra whose faces
+do not match unless ``--matching`` is given. ``brake``: a pad with back plate on half of a turning
+disk with hat, which carries the heat along (starter ``disk-brake-3d``); ``--peclet`` is ``v L/κ``
+with the length L of the pad. Each size (thousands of displacement unknowns) runs in a process of
+its own, so that the largest memory is that of the size.
 """
 
 from __future__ import annotations

@@ -2,9 +2,10 @@
 
 import math
 
+from mpi4py import MPI
+
 import numpy as np
 import pytest
-from mpi4py import MPI
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import lagrange_space

@@ -26,6 +26,11 @@ from ..meshing.tetrahedra import SectorZone, mesh_solids
 from .brake_drawing import DrawnBrake
 from .pad_outline import PadOutline
 
+_RADII = (
+    *("bore_radius", "hub_radius", "hat_radius"),
+    *("pad_inner_radius", "pad_outer_radius", "disk_outer_radius"),
+)
+"""Radii in ascending order."""
 _ORDER = 2
 """Largest cell order; never above the displacement degree, so that rigid rotations are exact."""
 _WIDEST = math.radians(150)
@@ -108,10 +113,8 @@ class DiskBrakeInSpace(Geometry):
     @model_validator(mode="after")
     def _nested(self):
         gap = _CLEARANCE * abs(self.pad_outer_radius - self.pad_inner_radius)
-        names: tuple[str, ...] = ("bore_radius", "hub_radius", "hat_radius", "pad_inner_radius")
-        names += ("pad_outer_radius", "disk_outer_radius")
         room = {"hat_radius": self.hat_thickness}
-        for smaller, larger in pairwise(names):
+        for smaller, larger in pairwise(_RADII):
             a, b, less = getattr(self, smaller), getattr(self, larger), room.get(larger, 0.0)
             if not a + less + gap <= b:
                 wall = " less hat_thickness" if less else ""
@@ -210,7 +213,7 @@ class DiskBrakeInSpace(Geometry):
     def build(self, mesh, zone=None) -> TaggedMesh:
         drawn, order = DrawnBrake(self), min(mesh.degree, _ORDER)
         sizes = self._pad_sizes(*mesh.face("pad"))
-        pad = mesh_solids(lambda occ: drawn.draw_pad(occ), {"pad": sizes}, order, drawn.unit)["pad"]
+        pad = mesh_solids(drawn.draw_pad, {"pad": sizes}, order, drawn.unit)["pad"]
         lining = pad.points[pad.cells[:, :4], 2].mean(axis=1) < self.pad_thickness
         pad = replace(pad, zones={"lining": np.flatnonzero(lining)})
         disk = self._disk(drawn, order, *mesh.face("disk"))

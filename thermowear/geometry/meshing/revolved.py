@@ -147,30 +147,14 @@ def revolved(
     """
     layers = len(angles) - 1
     check_count(len(_PRISM) * len(triangles), layers, most=MOST_TETRAHEDRA)
-    edges = triangles[:, [[0, 1], [0, 2], [1, 2]]].reshape(-1, 2)
-    edge, _ = numbered(edges)
-    _, first = np.unique(edge, return_index=True)
-    middles = points[edges[first]].mean(axis=1)
-    section = np.vstack([points, middles]) if order > 1 else points
-    middle_of: np.ndarray = np.empty(
-        (len(triangles), 3, 3), dtype=np.int64
-    )  # of corners, or between them
-    middle_of[:, range(3), range(3)] = triangles
-    for column, (i, j) in enumerate([(0, 1), (0, 2), (1, 2)]):
-        number = len(points) + edge.reshape(-1, 3)[:, column]
-        middle_of[:, i, j] = middle_of[:, j, i] = number
-    # the corners of all triangles in ascending order, so that diagonals agree
-    rank = np.argsort(triangles, axis=1)
-    middle_of = np.take_along_axis(middle_of, rank[:, :, None], axis=1)
-    middle_of = np.take_along_axis(middle_of, rank[:, None, :], axis=2)
+    section, between = _section_nodes(points, triangles, order)
     ends = _ends(order)  # of the edges on which the nodes of the three tetrahedra lie
-    in_section = middle_of[:, ends[..., 0] % 3, ends[..., 1] % 3]
-    half_layers = (ends >= 3).sum(axis=2) if order > 1 else (ends[..., 0] >= 3).astype(int)
-    per_layer = order
-    row = half_layers + per_layer * np.arange(layers)[:, None, None]
-    number = in_section[None] * (per_layer * layers) + (row % (per_layer * layers))[:, None]
-    cells = number.reshape(-1, ends.shape[1])
-    at = np.interp(np.arange(per_layer * layers) / per_layer, np.arange(layers + 1), angles)
+    in_section = between[:, ends[..., 0] % 3, ends[..., 1] % 3]
+    steps = order * layers  # positions of nodes round the axis
+    within = (ends >= 3).sum(axis=2) if order > 1 else (ends[..., 0] >= 3).astype(int)
+    position = (within + order * np.arange(layers)[:, None, None]) % steps
+    cells = (in_section[None] * steps + position[:, None]).reshape(-1, ends.shape[1])
+    at = np.interp(np.arange(steps) / order, np.arange(layers + 1), angles)
     r, z = section.T[:, :, None]
     places = np.stack(np.broadcast_arrays(r * np.cos(at), r * np.sin(at), z), axis=-1)
     used, cells = np.unique(cells, return_inverse=True)
@@ -179,6 +163,33 @@ def revolved(
     inverted = np.linalg.det(sides) < 0
     cells[inverted] = cells[inverted][:, turned("tetrahedron", order)]
     return MeshedBody(places, cells, boundary("tetrahedron", order, cells))
+
+
+def _section_nodes(
+    points: np.ndarray, triangles: np.ndarray, order: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes of a section, and those between all pairs of corners of its triangles.
+
+    The corners of each triangle are taken in ascending order, so that diagonals of prisms agree.
+
+    Returns
+    -------
+    nodes : ndarray, shape (n_nodes, 2) [m]
+    between : ndarray of int64, shape (n_triangles, 3, 3)
+        On the diagonal the corners.
+    """
+    triangles = np.sort(triangles, axis=1)
+    pairs = np.array([(0, 1), (0, 2), (1, 2)])
+    edges = triangles[:, pairs].reshape(-1, 2)
+    edge, _ = numbered(edges)
+    _, first = np.unique(edge, return_index=True)
+    between: np.ndarray = np.empty((len(triangles), 3, 3), dtype=np.int64)
+    between[:, range(3), range(3)] = triangles
+    for column, (i, j) in enumerate(pairs):
+        between[:, i, j] = between[:, j, i] = len(points) + edge.reshape(-1, 3)[:, column]
+    if order == 1:
+        return points, between
+    return np.vstack([points, points[edges[first]].mean(axis=1)]), between
 
 
 def _ends(order: int) -> np.ndarray:

@@ -118,12 +118,12 @@ def influence(
     nodes = np.unique(np.flatnonzero(np.diff(trace.indptr)) // dim)
     touching = (nodes[:, None] * dim + np.arange(dim)).ravel()
     stored = thermal_loads if distortion is None else ()
-    near = np.empty((len(touching), loads.shape[1]))
-    per_rise = [np.empty((G.getLocalSize()[1], loads.shape[1]), order="F") for G in stored]
+    near = np.zeros((len(touching), loads.shape[1]))
+    per_rise = [np.zeros((G.getLocalSize()[1], loads.shape[1]), order="F") for G in stored]
     for columns, displacements in elastic_columns(elastic, loads):
-        near[:, columns] = displacements[touching]
+        near[:, columns] += displacements[touching]
         for matrix, products in zip(stored, per_rise, strict=True):
-            products[:, columns] = transpose_product(matrix, displacements)
+            products[:, columns] += transpose_product(matrix, displacements)
         if distortion is not None:
             distortion.add(columns, transpose_product(thermal_loads[0], displacements))
     comm = elastic.space.mesh.comm

@@ -38,7 +38,10 @@ def blocks(count: int, dim: int) -> Iterator[slice]:
 
 
 def elastic_columns(elastic: Elasticity, loads: sp.csc_matrix) -> Iterator[tuple]:
-    """Solve for sparse nodal loads (n_owned, m): ranges of columns and their displacements."""
+    """Solve for sparse nodal loads (n_owned, m): ranges of columns and their displacements.
+
+    Users add up what they find: a range may come once for each body, zero in the others.
+    """
     for columns in blocks(loads.shape[1], elastic.bodies.mesh.geometry.dim):
         yield columns, elastic.solve(loads[:, columns].tocsr())
 
@@ -117,6 +120,8 @@ class ThermalOpening:
     def by_columns(self, slopes: Sequence[np.ndarray] = ()) -> Iterator[tuple[slice, np.ndarray]]:
         """Weak gap per nodal rise, shape (n_owned, width), with its range of pressure functions.
 
+        Parts of the same range add up, see `elastic_columns`.
+
         The rises of the matrices after the first are `slopes` (n_owned,) times that of the first.
         Every rank calls.
         """
@@ -180,7 +185,7 @@ class DistortionRows:
 
     def __init__(self, conduction: Conduction, faces: tuple[FaceNodes, FaceNodes], count: int):
         self._conduction, self._faces = conduction, faces
-        first, second = (np.empty((count, face.count)) for face in faces)
+        first, second = (np.zeros((count, face.count)) for face in faces)
         self.distortion = ThermalDistortion((first, second))
 
     def add(self, columns: slice, per_rise: np.ndarray) -> None:
@@ -188,7 +193,7 @@ class DistortionRows:
         adjoint = self._conduction.adjoint_response(per_rise)
         comm = self._conduction.space.mesh.comm
         for face, rows in zip(self._faces, self.distortion.per_heat, strict=True):
-            rows[columns] = np.vstack(comm.allgather(adjoint[face.rows])).T
+            rows[columns] += np.vstack(comm.allgather(adjoint[face.rows])).T
 
 
 def condense_distortion(

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.direct_solver import multiply
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
@@ -158,3 +159,25 @@ def test_condensed_distortion_equals_the_bodies_own():
         coupled.by_friction(q) + resting, weak, rtol=1e-7, atol=1e-9 * np.abs(weak).max()
     )
     assert np.all(weak < 0)
+
+
+@pytest.mark.parametrize("stored", [True, False])
+def test_opening_by_temperatures(stored):
+    """requirement: the weak gap opened by temperatures, at once or by columns, is that of the
+    bodies strained by them; an additional strain of one of them by its slope included.
+    """
+    bodies, pairing, conducting, basis, _, _ = interface(2, (2, 3))
+    materials = {part: ElasticMaterial(2e11, 0.3, 1.2e-5) for part in MATERIALS}
+    elastic = elasticity(bodies, Axisymmetric(), 2, materials, ["upper_end", "lower_end"])
+    trace = gap_trace(elastic.space, pairing)
+    matrices = [elastic.thermal_load(conducting.space, only) for only in (None, "lower")]
+    answers = influence(elastic, pairing, trace, basis, matrices)
+    loads = pressure_loads(trace, answers.weighted)
+    opening = ThermalOpening(elastic, loads, matrices, answers.per_rise if stored else ())
+    slope, *rises = np.random.default_rng(3).random((3, len(conducting.fixed)))
+    strained = [multiply(matrix, rise) for matrix, rise in zip(matrices, rises, strict=True)]
+    expected = answers.weighted.T @ sum_over_ranks(COMM, trace.T @ elastic.solve(sum(strained)))
+    np.testing.assert_allclose(opening.of(rises), expected, rtol=1e-9)
+    columns = [sum_over_ranks(COMM, block.T @ rises[0]) for _, block in opening.by_columns([slope])]
+    expected = opening.of([rises[0], slope * rises[0]])
+    np.testing.assert_allclose(np.concatenate(columns), expected, rtol=1e-9)

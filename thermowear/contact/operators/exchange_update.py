@@ -103,17 +103,13 @@ class ChangedExchange(HeatExchange):
         pairs = zip(self.division, reference.division, strict=True)
         direct, passing_fraction, resistance = (one[points] - two[points] for one, two in pairs)
         functions = scaled_functions(face.functions, self.scale)
-        difference = coupling_matrix(
+        self._difference = coupling_matrix(
             face.weights[points],
             functions[points],
             (face.values[0][points], face.values[1][points]),
             (direct, passing_fraction, resistance),
             0.0,
         )
-        # functions that no heat crosses any more are held at zero
-        idle = self.division[1] @ abs(functions) == 0.0
-        idle = np.concatenate([np.zeros(self._splits[-1]), idle])
-        self._difference = (difference + sp.diags_array(idle)).tocsr()
         rows, columns = self._difference.nonzero()
         self.near = np.union1d(rows, columns)
 

@@ -12,10 +12,18 @@ import dolfinx
 import numpy as np
 
 import thermowear as tw
+from thermowear.geometry.mesh.tagged import compact
 from thermowear.parallel import on_root
+from thermowear.verification.cases.patch_in_space import (
+    HEIGHTS,
+    MODULI,
+    PRESSURE,
+    SIZE,
+    PatchInSpace,
+)
 
 from ..case.starter import STEADY
-from .from_case import python_model
+from .from_case import own_mesh, python_model
 
 COARSE = ("mesh.degree=3", "mesh.elements=6")
 
@@ -36,6 +44,37 @@ def cell_sum(temperature, body):
     at_middle.interpolate(temperature)
     weights = mesh.h(mesh.topology.dim, own.astype(np.int32)) ** 2
     return mesh.comm.allreduce(at_middle.x.array[own] @ weights)
+
+
+def mixed(orders=(1, 2), tetrahedra=(True, False)):
+    """Two blocks of different cells in series: errors of temperatures and displacements by body.
+
+    Relative to the largest differences; also the pressures over the exact one.
+    """
+    meshes = PatchInSpace(columns=(2, 3), orders=orders, tetrahedra=tetrahedra).build(None)
+    bodies, heights = [], {"upper": HEIGHTS[0], "lower": HEIGHTS[1]}
+    for block, (name, height), E in zip(meshes.blocks, heights.items(), MODULI, strict=True):
+        mesh, _, facets = own_mesh(compact(block))
+        material = tw.Material(E, 0.0, conductivity=1e3 * height)
+        bodies.append(tw.Body(name, mesh, None, facets, material, () if name == "upper" else 205))
+    upper, lower = bodies
+    face, top, bottom = upper.surface(41), upper.surface(7), lower.surface(205)
+    pair = tw.Interface(lower.surface(32), face, wear={upper: tw.PowerWear(1e-15)})
+    holder = tw.Holder(top, force=PRESSURE * SIZE[0] * SIZE[1])
+    heat = tw.Heat(temperature={top: "340 K", bottom: "300 K"})
+    found = tw.Model([pair], [holder], heat=heat, degree=2).initial()
+    result = {"pressure": np.asarray(found.pressure(pair)) / PRESSURE}
+    for body in bodies:
+        T, u = found.temperature(body), found.displacement(body)
+        z = T.function_space.tabulate_dof_coordinates()[:, 2]
+        expected = 320 + 20 * z / heights[body.name]
+        result[f"{body.name} T"] = (T.x.array - expected) / 20
+        z = u.function_space.tabulate_dof_coordinates()[:, 2]
+        moved = np.zeros((len(z), 3))
+        moved[:, 2] = -PRESSURE * (np.minimum(z, 0.0) + HEIGHTS[1]) / MODULI[1]
+        moved[:, 2] -= PRESSURE * np.maximum(z, 0.0) / MODULI[0]
+        result[f"{body.name} u"] = (u.x.array.reshape(-1, 3) - moved) / np.abs(moved).max()
+    return result
 
 
 def faulty(kind):
@@ -66,6 +105,7 @@ if __name__ == "__main__":
     rank = MPI.COMM_WORLD.rank
     runs = {
         "steady": computed,
+        "mixed": mixed,
         "saved": lambda: saved(folder),
         "unsendable": lambda: on_root(MPI.COMM_WORLD, lambda: lambda: 0),
     }

@@ -169,8 +169,8 @@ def test_opening_by_temperatures(stored):
     bodies, pairing, conducting, basis, _, _ = interface(2, (2, 3))
     materials = {part: ElasticMaterial(2e11, 0.3, 1.2e-5) for part in MATERIALS}
     elastic = elasticity(bodies, Axisymmetric(), 2, materials, ["upper_end", "lower_end"])
-    trace = gap_trace(elastic.space, pairing)
-    matrices = [elastic.thermal_load(conducting.space, only) for only in (None, "lower")]
+    trace = gap_trace(elastic.spaces, pairing)
+    matrices = [elastic.thermal_load(conducting.spaces, only) for only in (None, "lower")]
     answers = influence(elastic, pairing, trace, basis, matrices)
     loads = pressure_loads(trace, answers.weighted)
     opening = ThermalOpening(elastic, loads, matrices, answers.per_rise if stored else ())

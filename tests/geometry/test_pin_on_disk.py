@@ -48,10 +48,12 @@ def built(geometry, zone=None, degree=2, elements=6, **keys):
 def measured(mesh):
     """Volume of each body [m³]."""
     bodies = distribute(mesh if COMM.rank == 0 else None, COMM)
-    volumes = {body.parts: fem.form(fem.Constant(body.mesh, 1.0) * ufl.dx) for body in bodies.each}
-    return {
-        name: sum_over_ranks(COMM, fem.assemble_scalar(form)) for (name,), form in volumes.items()
+    volumes = {
+        name: fem.form(body.per_part({name: 1.0}) * ufl.dx)
+        for body in bodies.each
+        for name in body.parts
     }
+    return {name: sum_over_ranks(COMM, fem.assemble_scalar(form)) for name, form in volumes.items()}
 
 
 def rounded(radius, height):

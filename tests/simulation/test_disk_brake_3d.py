@@ -51,6 +51,18 @@ def test_the_other_pad_balances_the_force(cold):
     assert bent > 5 * straight
 
 
+@pytest.mark.slow
+def test_worn_volumes():
+    """requirement: both bodies lose k F s at every place: their volumes are in the ratio of k."""
+    after = {"type": "transient", "end_time": "2000 s", "tolerance": 1e-2}
+    summary = run(heat=None, analysis=after).summary
+    first, second = (summary[f"wear_volume_{body}_m3"] for body in (1, 2))
+    assert second / first == pytest.approx(5e-16 / 3e-14, rel=1e-9)
+    # the mean sliding distance is that of a radius within the pad
+    for radius, sign in ((0.098, 1), (0.107, -1)):
+        assert sign * first > sign * 3e-14 * FORCE * SPEED * radius * 2000
+
+
 def test_hot_starter():
     """requirement: heat balance; the disk is hottest on its track, its flange is cold."""
     result = run()

@@ -16,7 +16,7 @@ import numpy as np
 from pydantic import model_validator
 
 from ...case.tables.geometry import Geometry, keyed, named
-from ...case.values.section import KeyFault
+from ...case.values.section import KeyFault, Switch
 from ...case.values.units import Angle, Length
 from ..mesh.tagged import TaggedMesh
 from ..meshing.cells import MeshedBody, tagged_bodies
@@ -103,7 +103,7 @@ class DiskBrakeInSpace(Geometry):
     piston_radius: Length
     disk_outer_radius: Length
     disk_thickness: Length
-    half: bool = False
+    half: Switch = False
     hat_radius: Length
     hat_height: Length
     hat_thickness: Length

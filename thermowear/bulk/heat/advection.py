@@ -7,7 +7,8 @@ generated there at any speed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 from petsc4py import PETSc
 
@@ -69,10 +70,13 @@ class Advection:
         body [W/K]. Entering material is at ambient temperature.
     peclet : float
         Largest cell Péclet number ``|v| h/(2 κ degree)``.
+    paths : path_solver.ClosedPaths or None
+        Closed paths of a body in space with rows of cells, for an iterative solver.
     """
 
     carried: PETSc.Mat
     peclet: float
+    paths: Any = field(default=None, kw_only=True)
 
     @property
     def stabilised(self) -> bool:

@@ -22,6 +22,7 @@ from ..solver_choice import AnySolver, SolverChoice, linear_solver
 from ..spaces import Spaces
 from .advection import Advection
 from .even_paths import EvenPaths
+from .path_solver import PathSolver
 
 _BALANCE_FLOOR = 1e-8
 """Fraction of the flows between neighbouring nodes that serves as scale of the heat balance where
@@ -127,7 +128,14 @@ class Conduction:
             self,
             conductivity=total,
             factor=conduction_solver(
-                self.spaces, total, self.bath, self.fixed, symmetric, self.even, self.choice
+                self.spaces,
+                total,
+                self.bath,
+                self.fixed,
+                self.advection,
+                self.even,
+                self.choice,
+                symmetric,
             ),
             symmetric=symmetric,
         )
@@ -139,9 +147,10 @@ class Conduction:
             self.conductivity,
             bath,
             self.fixed,
-            self.symmetric,
+            self.advection,
             self.even,
             self.choice,
+            self.symmetric,
         )
         if isinstance(factor, MultigridSolver) and isinstance(self.factor, MultigridSolver):
             factor.iterations = self.factor.iterations  # counted together
@@ -228,9 +237,10 @@ def conduction_solver(
     conductivity: PETSc.Mat,
     bath: PETSc.Mat,
     fixed: np.ndarray,
-    symmetric: bool,
+    moving: Advection | None,
     even: EvenPaths | None,
     choice: SolverChoice,
+    symmetric: bool | None = None,
 ) -> AnySolver:
     """Solver of conductivity plus bath, rows and columns of prescribed temperatures eliminated.
 
@@ -238,11 +248,13 @@ def conduction_solver(
     """
     matrix = conductivity.copy()
     matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
-    known = "definite" if symmetric else "none"
+    known = "definite" if (moving is None if symmetric is None else symmetric) else "none"
     if even is not None:
         return even.factor(matrix, fixed, known)
     first = matrix.getOwnershipRange()[0]
     matrix.zeroRowsColumns((np.flatnonzero(fixed) + first).astype(PETSc.IntType), diag=1.0)
+    if choice.iterative and moving is not None and moving.paths is not None:
+        return PathSolver(matrix, spaces, fixed, moving.paths)
     return linear_solver(choice, matrix, spaces, fixed, known)
 
 

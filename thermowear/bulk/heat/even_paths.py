@@ -53,6 +53,28 @@ class EvenPaths:
                 f"{passage.parts[0]!r}, whose mesh has none; use 'resolved'"
             )
 
+    @property
+    def count(self) -> int:
+        """Number of owned values."""
+        return len(self._passing) + len(self._others)
+
+    @property
+    def numbers(self) -> np.ndarray:
+        """Path of each owned value, -1 outside the moving body, shape (n_owned,)."""
+        found = np.full(self.count, -1)
+        found[self._passing] = self._path
+        return found
+
+    def along_paths(self, matrix: PETSc.Mat) -> PETSc.Mat:
+        """Nodal values in the layout of a matrix that are one on a path, a column for each."""
+        join = self._prolongation(matrix)
+        rows, size = join.getSizes()[0], self._paths if self._comm.rank == 0 else 0
+        last = join.getSizes()[1][0] if self._comm.rank == 0 else 0
+        chosen = PETSc.IS().createStride(size, last - size, 1, comm=matrix.comm)
+        first = matrix.getOwnershipRange()[0]
+        every = PETSc.IS().createStride(rows[0], first, 1, comm=matrix.comm)
+        return join.createSubMatrix(every, chosen)
+
     def whole(self, fixed: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Extend prescribed temperatures (n_owned,) to whole paths (mean on each path)."""
         met = self._summed(fixed[:, None].astype(float))[:, 0]

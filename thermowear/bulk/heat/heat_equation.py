@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from petsc4py import PETSc
 
@@ -20,6 +20,7 @@ from ..spaces import Spaces, block_diagonal
 from .advection import Advection, BodyAdvection, Passage, advection
 from .conduction import Conduction, conduction_solver
 from .even_paths import EvenPaths
+from .path_solver import closed_paths
 
 
 @dataclass(frozen=True)
@@ -86,9 +87,11 @@ def conduction(
             block_diagonal([_carried(block) for block in blocks]),
             max(block.advection.peclet for block in blocks if block.advection is not None),
         )
+        if choice.iterative and moving.stabilised:
+            moving = replace(moving, paths=closed_paths(bodies, spaces, passage))
         conductivity.axpy(1.0, moving.carried, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
     fixed, values = given_rises(bodies, spaces, given, even)
-    factor = conduction_solver(spaces, conductivity, bath, fixed, moving is None, even, choice)
+    factor = conduction_solver(spaces, conductivity, bath, fixed, moving, even, choice)
     return Conduction(
         spaces,
         conductivity,

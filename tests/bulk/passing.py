@@ -1,18 +1,18 @@
 """Bodies that pass: a strip and a ring alone, and conduction in them."""
 
 from mpi4py import MPI
-from petsc4py import PETSc
 
 import numpy as np
-from dolfinx import fem
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import PlaneStrain
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.geometry.meshing.cells import Sheet, grid, mesh_body, tagged_bodies
 from thermowear.geometry.meshing.polar import Polar
+
+from .fields import empty_matrix
 
 COMM = MPI.COMM_WORLD
 STEEL = ThermalMaterial(50.0, 2e6)
@@ -64,28 +64,12 @@ def turning(speed, spread=False):
 
 def conducting(bodies, degree, passage=None, given=None, cooling=None, material=STEEL):
     """Conduction, a metre thick, without a bath."""
-    space = lagrange_space(bodies.mesh, degree)
-    n = (owned(space), space.dofmap.index_map.size_global)
-    nothing = PETSc.Mat().createAIJ((n, n), comm=bodies.mesh.comm)
-    nothing.setUp()
-    nothing.assemble()
+    spaces = lagrange_spaces(bodies, degree)
+    nothing = empty_matrix(spaces)
     materials = dict.fromkeys(bodies.names, material)
     return conduction(
-        bodies, PlaneStrain(1.0), space, materials, cooling or {}, given or {}, nothing, passage
+        bodies, PlaneStrain(1.0), spaces, materials, cooling or {}, given or {}, nothing, passage
     )
-
-
-def interpolated(space, function):
-    values = fem.Function(space)
-    values.interpolate(function)
-    return values.x.array[: owned(space)]
-
-
-def times(matrix, values):
-    x, y = matrix.createVecs()
-    x.setArray(values)
-    matrix.mult(x, y)
-    return y.getArray().copy()
 
 
 def total(values):

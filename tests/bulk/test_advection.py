@@ -8,10 +8,12 @@ from dolfinx.fem.petsc import assemble_vector
 
 from thermowear import load
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import as_function, lagrange_space, owned
+from thermowear.bulk.field import as_function
 from thermowear.bulk.heat.advection import Passage
+from thermowear.bulk.spaces import lagrange_spaces
 
 from ..conftest import DEMOS
+from .fields import interpolated, times
 from .passing import (
     COMM,
     INNER,
@@ -19,11 +21,9 @@ from .passing import (
     STEEL,
     along,
     conducting,
-    interpolated,
     largest,
     ring,
     strip,
-    times,
     total,
     turning,
 )
@@ -34,7 +34,7 @@ LENGTH, HEIGHT = 0.02, 0.01
 
 
 def random_rise(conduction, seed=0):
-    x = conduction.space.tabulate_dof_coordinates()[: owned(conduction.space)]
+    x = conduction.spaces.nodes()
     phases = np.random.default_rng(seed).uniform(0, 7, 4)
     return np.sin(437 * x[:, 0] + phases[0]) * np.cos(291 * x[:, 1] + phases[1])
 
@@ -47,7 +47,7 @@ def test_between_two_given_temperatures(peclet, sense):
     given = {"strip_left": 0.0, "strip_right": 100.0}
     moving = conducting(strip(), 8, along(speed), given)
     exact = interpolated(
-        moving.space,
+        moving.spaces,
         lambda x: 100 * np.expm1(sense * peclet * x[0] / LENGTH) / np.expm1(sense * peclet),
     )
     assert not moving.advection.stabilised
@@ -62,7 +62,7 @@ def test_velocity_is_that_of_a_rigid_body(center):
     if center is not None:  # its mean is that of the middle
         velocity = (-3.0 * (HEIGHT / 2 - center[1]), 3.0 * (LENGTH / 2 - center[0]))
     for axis, mean in enumerate(velocity):
-        rise = interpolated(moving.space, lambda x, axis=axis: x[axis])
+        rise = interpolated(moving.spaces, lambda x, axis=axis: x[axis])
         coming_in = (
             times(moving.advection.carried, np.ones(len(rise))) * rise
         )  # not inside: 1 has no slope
@@ -78,9 +78,9 @@ def test_what_a_strip_carries_out(degree, bend, speed):
     moving = conducting(strip(bend=bend), degree, along(speed))
     assert moving.advection.stabilised == (speed == 1.0)
     rise = random_rise(moving)
-    field = as_function(moving.space, rise, "rise")
+    (field,) = moving.spaces.functions(rise, "rise")
     ds = ufl.Measure("ds", metadata={"quadrature_degree": 2 * degree + 4})
-    normal = ufl.FacetNormal(moving.space.mesh)[0]
+    normal = ufl.FacetNormal(field.function_space.mesh)[0]
     out = fem.assemble_scalar(fem.form(C * speed * ufl.max_value(normal, 0) * field * ds))
     out = total(out)
     carried = times(moving.advection.carried, rise)
@@ -104,8 +104,8 @@ def test_a_ring_that_turns_keeps_what_is_even_round_it():
     given, cooling = {"ring_rim": 100.0}, {"ring_bore": 3e3}
     bodies = ring()
     still = conducting(bodies, 4, None, given, cooling)
-    rise = still.solve(np.zeros(owned(still.space)))
-    r = np.linalg.norm(still.space.tabulate_dof_coordinates()[: len(rise)], axis=1)
+    rise = still.solve(np.zeros(still.spaces.owned))
+    r = np.linalg.norm(still.spaces.nodes(), axis=1)
     flux = 100 / (np.log(OUTER / INNER) / K + 1 / (3e3 * INNER))
     exact = 100 - flux * np.log(OUTER / r) / K
     for speed in (1e-2, 1.0, 100.0):
@@ -113,8 +113,8 @@ def test_a_ring_that_turns_keeps_what_is_even_round_it():
         found = moving.solve(np.zeros(len(rise)))
         assert largest(found - exact) < 1e-4 * 100
         assert largest(found - rise) < 1e-6 * 100  # the cells are round to 6e-7
-        ψ = fem.Function(moving.space)
-        ψ.interpolate(turning(1.0).stream(moving.space.mesh))
+        ψ = fem.Function(moving.spaces.each[0])
+        ψ.interpolate(turning(1.0).stream(ψ.function_space.mesh))
         even = ψ.x.array[: len(rise)] ** 2 / OUTER**4
         if not moving.advection.stabilised:  # upwinding asks what is conducted too
             assert largest(times(moving.advection.carried, even)) < 1e-13 * C * speed * OUTER**2
@@ -125,14 +125,14 @@ def test_heat_goes_where_the_body_goes():
     bodies = strip(8, 4)
     for sense in (1, -1):
         moving = conducting(bodies, 3, along(sense * 1e-2))
-        x, y, _ = moving.space.tabulate_dof_coordinates()[: owned(moving.space)].T
+        x, y = moving.spaces.nodes().T
         spot = np.exp(-(((x - LENGTH / 2) / 1e-3) ** 2) - ((y - HEIGHT) / 1e-3) ** 2)
         rise = moving.respond(spot)
         right, left = total(rise[x > 0.6 * LENGTH]), total(rise[x < 0.4 * LENGTH])
         assert sense * (right - left) > 0.7 * (right + left)
     for sense in (1, -1):
         turns = conducting(ring(), 3, turning(sense * 1.0), {"ring_bore": 0.0})
-        x, y, _ = turns.space.tabulate_dof_coordinates()[: owned(turns.space)].T
+        x, y = turns.spaces.nodes().T
         rise = turns.respond(np.exp(-((x / 1e-3) ** 2) - ((y - OUTER) / 1e-3) ** 2))
         skin = (np.hypot(x, y) > 0.9 * OUTER) & (y > 0)
         left, right = total(rise[skin & (x < -0.005)]), total(rise[skin & (x > 0.005)])
@@ -179,7 +179,7 @@ def test_order_of_convergence(degree, cells, fast, step):
         bodies = strip(n, n)
         moving = conducting(bodies, degree, along(speed))
         assert moving.advection.stabilised == (fast > 100)
-        mesh, space = bodies.mesh, moving.space
+        mesh, space = bodies.each[0].mesh, moving.spaces.each[0]
         x, y = ufl.SpatialCoordinate(mesh)
         exact = ufl.exp(-α * x) * ufl.cos(β * y)
         n_out, dT = ufl.FacetNormal(mesh), ufl.TestFunction(space)
@@ -189,7 +189,7 @@ def test_order_of_convergence(degree, cells, fast, step):
             fem.form((K * ufl.dot(ufl.grad(exact), n_out) + into) * dT * ds)
         ).array
         if step is not None:
-            exact_now = interpolated(space, lambda x: np.exp(-α * x[0]) * np.cos(β * x[1]))
+            exact_now = interpolated(moving.spaces, lambda x: np.exp(-α * x[0]) * np.cos(β * x[1]))
             heat = heat + moving.stored_heat(exact_now * (1 + step * growth)) / step
             moving = moving.implicit_euler(step)
         rise = as_function(space, moving.respond(heat), "rise")
@@ -231,8 +231,8 @@ def test_bodies_that_stay_are_left_alone():
     passage = Passage(("disk",), (0.0, 0.0), 100.0, spread=False)
     still, moving = conducting(bodies, 2), conducting(bodies, 2, passage)
     assert moving.advection.stabilised
-    block = np.unique(still.space.dofmap.list[bodies.cell_tags.find(bodies.body_tag("block"))])
-    rise = np.zeros(owned(still.space))
+    block = np.flatnonzero(still.spaces.nodes_of(bodies, "block"))
+    rise = np.zeros(still.spaces.owned)
     rise[block] = random_rise(still)[block]
     np.testing.assert_array_equal(times(moving.advection.carried, rise), 0.0)
     for name in ("conductivity", "capacity"):
@@ -255,9 +255,9 @@ def test_uniform_temperature_along_paths_needs_rows_of_cells():
     passage = Passage(("lower",), None, 1.0, spread=True)
     for place, refused in ((straight, False), (bent, True)):
         bodies, _ = gathered(two_solids(maps=(place, place), cell_type="tetrahedron"))
-        space = lagrange_space(bodies.mesh, 1)
+        spaces = lagrange_spaces(bodies, 1)
         if refused:
             with pytest.raises(CaseError, match="rows of cells along the motion of 'lower'"):
-                EvenPaths(bodies, space, passage)
+                EvenPaths(bodies, spaces, passage)
         else:
-            EvenPaths(bodies, space, passage)
+            EvenPaths(bodies, spaces, passage)

@@ -1,22 +1,19 @@
 """Axisymmetric elasticity and thermal strain."""
 
 from mpi4py import MPI
-from petsc4py import PETSc
 
 import numpy as np
 import pytest
 import ufl
-from dolfinx import fem
-from dolfinx.fem.petsc import assemble_vector
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.compiled import nodal_loads
-from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.spaces import lagrange_spaces
 
 from ..conftest import two_blocks
 from ..reference import cylinder
+from .fields import integral, interpolated, times
 
 STEEL = ElasticMaterial(2e11, 0.3, 1.2e-5)
 SOFT = ElasticMaterial(1e9, 0.45, 5e-5)
@@ -41,22 +38,11 @@ def build(
 
 def nodal(elastic, function):
     """Owned nodal values of a vector field given at x of shape (3, n)."""
-    u = fem.Function(elastic.space)
-    u.interpolate(function)
-    return u.x.array[: owned(elastic.space)].copy()
+    return interpolated(elastic.spaces, function)
 
 
 def residual(elastic, displacement):
-    x, y = elastic.stiffness.createVecs()
-    x.setArray(displacement)
-    elastic.stiffness.mult(x, y)
-    return y.getArray().copy()
-
-
-def assembled(form):
-    vector = assemble_vector(fem.form(form))
-    vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
-    return vector.getArray().copy()
+    return times(elastic.stiffness, displacement)
 
 
 @pytest.mark.parametrize("degree", [1, 2, 5])
@@ -67,10 +53,10 @@ def test_linear_patch(degree):
     """
     elastic = build(degree)
     forces = residual(elastic, nodal(elastic, lambda x: np.stack([0 * x[0], 1e-3 * x[1]])))
-    x = elastic.space.tabulate_dof_coordinates()
+    x = elastic.nodes()
     inner = (x[:, 0] > 0.0501) & (x[:, 0] < 0.0899) & (np.abs(x[:, 1]) > 1e-6)
     inner &= (x[:, 1] < 0.0199) & (x[:, 1] > -0.0299)
-    inside = np.repeat(inner[: len(forces) // 2], 2)
+    inside = np.repeat(inner, 2)
     assert inside.any()
     assert np.abs(forces[inside]).max() <= 1e-12 * np.abs(forces).max()
 
@@ -83,10 +69,9 @@ def test_thick_walled_cylinder():
     def exact(x):
         return np.stack([cylinder.radial_displacement(x[0], inner, outer, p, 2e11, 0.3), 0 * x[0]])
 
-    mesh = elastic.bodies.mesh
     forces = residual(elastic, nodal(elastic, exact))[::2]
-    r = elastic.space.tabulate_dof_coordinates()[: len(forces), 0]
-    total = mesh.comm.allreduce(forces[np.abs(r - inner) < 1e-9].sum())
+    r = elastic.nodes()[:, 0]
+    total = elastic.bodies.comm.allreduce(forces[np.abs(r - inner) < 1e-9].sum())
     assert total == pytest.approx(p * 2 * np.pi * inner * 0.05, rel=1e-8)
     assert np.abs(forces[np.abs(r - inner) > 1e-9]).max() <= 1e-7 * np.abs(forces).max()
 
@@ -96,8 +81,7 @@ def test_pressure_on_the_surface_inside_a_thick_walled_cylinder():
     elastic = build(6, materials=(STEEL, STEEL), clamped=(), rollers=(*ENDS, *FACES))
     p, inner, outer = 1e8, 0.05, 0.09
     loads = sum(
-        nodal_loads(elastic.space, elastic.pressure_work(f"{b}_inside", p))
-        for b in ("upper", "lower")
+        elastic.spaces.loads(elastic.pressure_work(f"{b}_inside", p)) for b in ("upper", "lower")
     )
     u = elastic.solve(loads).reshape(-1, 2)
     r = elastic.nodes()[:, 0]
@@ -109,17 +93,13 @@ def test_pressure_on_the_surface_inside_a_thick_walled_cylinder():
 def test_free_expansion_has_no_stress():
     """requirement: u = α ΔT x under uniform ΔT: |σ| <= 1e-10 E α ΔT and no nodal forces."""
     elastic = build(3, materials=(STEEL, STEEL))
-    space = lagrange_space(elastic.bodies.mesh, 3)
+    spaces = lagrange_spaces(elastic.bodies, 3)
     u = nodal(elastic, lambda x: 1.2e-5 * 100 * x[:2])
-    rise = np.full(owned(space), 100.0)
-    load = elastic.thermal_load(space)
-    right, thermal = load.createVecs()
-    right.setArray(rise)
-    load.mult(right, thermal)
-    forces = residual(elastic, u)
-    assert np.abs(forces - thermal.getArray()).max() <= 1e-10 * np.abs(forces).max()
-    σ = elastic.stress(as_function(elastic.space, u, "u"), as_function(space, rise, "T"))
-    energy = fem.assemble_scalar(fem.form(ufl.inner(σ, σ) * ufl.dx))
+    rise = np.full(spaces.owned, 100.0)
+    thermal, forces = times(elastic.thermal_load(spaces), rise), residual(elastic, u)
+    assert np.abs(forces - thermal).max() <= 1e-10 * np.abs(forces).max()
+    stresses = _stresses(elastic, u, spaces, rise)
+    energy = integral(elastic.bodies, *(ufl.inner(σ, σ) * ufl.dx for σ in stresses))
     assert np.sqrt(energy / (0.04 * 0.05)) <= 1e-10 * 2e11 * 1.2e-5 * 100
 
 
@@ -131,15 +111,19 @@ def test_compressibility_of_the_least_compressible_body():
 def test_clamped_heating():
     """requirement: fully constrained heating gives σ = -E α ΔT/(1 - 2ν) in all directions."""
     elastic = build(2, materials=(STEEL, STEEL))
-    space = lagrange_space(elastic.bodies.mesh, 2)
-    rise = as_function(space, np.full(owned(space), 50.0), "T")
-    u = as_function(elastic.space, np.zeros(owned(elastic.space)), "u")
-    σ = elastic.stress(u, rise)
+    spaces = lagrange_spaces(elastic.bodies, 2)
+    at_rest, rise = np.zeros(elastic.spaces.owned), np.full(spaces.owned, 50.0)
+    stresses = _stresses(elastic, at_rest, spaces, rise)
     area = 0.04 * 0.05
     for i in range(3):
-        mean = fem.assemble_scalar(fem.form(σ[i, i] * ufl.dx)) / area
-        mean = elastic.bodies.mesh.comm.allreduce(mean)
+        mean = integral(elastic.bodies, *(σ[i, i] * ufl.dx for σ in stresses)) / area
         assert mean == pytest.approx(-2e11 * 1.2e-5 * 50 / (1 - 0.6), rel=1e-12)
+
+
+def _stresses(elastic, displacement, spaces, rise):
+    """Stress of each body."""
+    fields = elastic.spaces.functions(displacement, "u"), spaces.functions(rise, "T")
+    return [body.stress(u, T) for body, u, T in zip(elastic.each, *fields, strict=True)]
 
 
 def galerkin_error(degree, n):
@@ -148,24 +132,33 @@ def galerkin_error(degree, n):
     (Clamped all round: where a clamped edge meets a free one, duality costs the L2 error an order.)
     """
     elastic = build(degree, n, n, (STEEL, STEEL), EVERYWHERE, (1.0, 1.0))
-    mesh = elastic.bodies.mesh
+    dx = ufl.dx(metadata={"quadrature_degree": 2 * degree + 6})
+    exact = [_wave(body.mesh) for body in elastic.bodies.each]
+    works = [_work_of(body, field, dx) for body, field in zip(elastic.each, exact, strict=True)]
+    found = elastic.spaces.functions(elastic.solve(elastic.spaces.loads(works)), "u")
+    errors = [u - field for u, field in zip(found, exact, strict=True)]
+    slopes = [ufl.grad(error) for error in errors]
+    return [
+        np.sqrt(integral(elastic.bodies, *(ufl.inner(e, e) * dx for e in each)))
+        for each in (errors, slopes)
+    ]
+
+
+def _work_of(body, exact, dx):
+    """Work of the stress of a displacement, as a function of the test function."""
+    r = ufl.SpatialCoordinate(body.body.mesh)[0]
+    strain = Axisymmetric().strain
+    return lambda v: (2 * np.pi * r * ufl.inner(body.stress(exact), strain(body.body.mesh, v)) * dx)
+
+
+def _wave(mesh):
+    """Smooth displacement that vanishes on all boundaries."""
     x = ufl.SpatialCoordinate(mesh)
     wave = ufl.conditional(
         ufl.gt(x[1], 0), ufl.sin(ufl.pi * x[1] / 0.02), ufl.sin(ufl.pi * x[1] / 0.03)
     )
     wave *= ufl.sin(ufl.pi * (x[0] - 0.05) / 0.04)
-    exact = 1e-5 * ufl.as_vector([wave * ufl.exp(x[0] / 0.05), wave * ufl.cos(x[0] / 0.02)])
-    v = ufl.TestFunction(elastic.space)
-    dx = ufl.dx(metadata={"quadrature_degree": 2 * degree + 6})
-    loads = assembled(
-        2 * np.pi * x[0] * ufl.inner(elastic.stress(exact), Axisymmetric().strain(mesh, v)) * dx
-    )
-    u = as_function(elastic.space, elastic.solve(loads), "u")
-    error = u - exact
-    return [
-        np.sqrt(mesh.comm.allreduce(fem.assemble_scalar(fem.form(ufl.inner(e, e) * dx))))
-        for e in (error, ufl.grad(error))
-    ]
+    return 1e-5 * ufl.as_vector([wave * ufl.exp(x[0] / 0.05), wave * ufl.cos(x[0] / 0.02)])
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3])
@@ -182,6 +175,6 @@ def test_supports_carry_the_load():
     elastic = build(4)
     loads = nodal(elastic, lambda x: np.stack([0 * x[0], np.exp(20 * x[0])]))
     u = elastic.solve(loads)
-    comm = elastic.bodies.mesh.comm
+    comm = elastic.bodies.comm
     reactions = comm.allreduce(elastic.reactions(u, loads)[1::2].sum())
     assert reactions == pytest.approx(-comm.allreduce(loads[1::2].sum()), rel=1e-10)

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from thermowear.bulk.field import owned
 from thermowear.bulk.heat.advection import Passage
 
 from .passing import COMM, INNER, OUTER, STEEL, conducting, largest, ring, strip, total, turning
@@ -13,7 +12,7 @@ FAST = turning(1.0, spread=True)
 
 
 def places(conduction):
-    return conduction.space.tabulate_dof_coordinates()[: owned(conduction.space), :2].T
+    return conduction.spaces.nodes().T
 
 
 def spot(conduction, angle=1.0):
@@ -73,7 +72,7 @@ def test_what_is_sensed_and_stored():
     """requirement: adjoint solution; heat of a time step equals storage plus cooling."""
     even = conducting(ring(), 4, FAST, {}, {"ring_bore": 1e3}).implicit_euler(0.2)
     rng = np.random.default_rng(3)
-    heat, weights = rng.normal(size=(2, owned(even.space), 3))
+    heat, weights = rng.normal(size=(2, even.spaces.owned, 3))
     forward = COMM.allreduce(weights.T @ even.respond(heat))
     np.testing.assert_allclose(
         COMM.allreduce(even.adjoint_response(weights).T @ heat), forward, rtol=1e-9

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 import ufl
 from dolfinx import fem
-from dolfinx.fem.petsc import assemble_vector
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, PlaneStress, kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.case.tables.conditions import MotionTable
 from thermowear.contact.operators.rigid_motion import sliding
 
 from ..conftest import two_blocks
+from .fields import integral, interpolated, times
 
 E, ν, α = 2e11, 0.3, 1.2e-5
 THICKNESS = 0.007
@@ -50,16 +50,7 @@ def build(model, degree, triangles=False, order=1, clamped=()):
 
 
 def nodal(elastic, function):
-    u = fem.Function(elastic.space)
-    u.interpolate(function)
-    return u.x.array[: owned(elastic.space)].copy()
-
-
-def multiply(matrix, values):
-    x, y = matrix.createVecs()
-    x.setArray(values)
-    matrix.mult(x, y)
-    return y.getArray().copy()
+    return interpolated(elastic.spaces, function)
 
 
 def hooke(model, e):
@@ -76,12 +67,13 @@ def test_linear_patch_on_curved_cells(model, triangles, order):
     elastic = build(model, max(order, 2), triangles, order, ("upper_end",))
     gradient = np.array([[1e-3, -4e-4], [2e-4, 7e-4]])
     strain = (gradient + gradient.T) / 2
-    forces = multiply(elastic.stiffness, nodal(elastic, lambda x: gradient @ x[:2]))
-    mesh = elastic.bodies.mesh
-    σ, n = ufl.as_matrix(hooke(model, strain).tolist()), ufl.FacetNormal(mesh)
-    δu = ufl.TestFunction(elastic.space)
+    forces = times(elastic.stiffness, nodal(elastic, lambda x: gradient @ x[:2]))
+    σ = ufl.as_matrix(hooke(model, strain).tolist())
     ds = ufl.ds(metadata={"quadrature_degree": 2 * max(order, 2) + 2 * order})
-    tractions = assemble_vector(fem.form(THICKNESS * ufl.inner(σ * n, δu) * ds)).getArray()
+    normals = [ufl.FacetNormal(body.mesh) for body in elastic.bodies.each]
+    tractions = elastic.spaces.loads(
+        [lambda δu, n=n: THICKNESS * ufl.inner(σ * n, δu) * ds for n in normals]
+    )
     assert forces == pytest.approx(tractions, abs=1e-11 * np.abs(tractions).max())
 
 
@@ -91,30 +83,33 @@ def test_free_expansion_is_free_of_stress(model):
     elastic = build(model, 2, clamped=("upper_end",))
     rise, stretch = 80.0, 1.0 if isinstance(model, PlaneStress) else 1 + ν
     expanded = nodal(elastic, lambda x: stretch * α * rise * x[:2])
-    space = lagrange_space(elastic.bodies.mesh, 2)
-    heated = multiply(elastic.thermal_load(space), np.full(owned(space), rise))
-    forces = multiply(elastic.stiffness, expanded)
+    spaces = lagrange_spaces(elastic.bodies, 2)
+    heated = times(elastic.thermal_load(spaces), np.full(spaces.owned, rise))
+    forces = times(elastic.stiffness, expanded)
     assert forces == pytest.approx(heated, abs=1e-10 * np.abs(heated).max())
-    u = as_function(elastic.space, expanded, "u")
-    σ = elastic.stress(u, fem.Constant(elastic.bodies.mesh, rise))
-    across = _mean(elastic, σ[2, 2])
+    stresses = [
+        body.stress(u, fem.Constant(body.body.mesh, rise))
+        for body, u in zip(elastic.each, elastic.spaces.functions(expanded, "u"), strict=True)
+    ]
+    across = _mean(elastic, [σ[2, 2] for σ in stresses])
     expected = 0.0 if isinstance(model, PlaneStress) else -E * α * rise
     assert across == pytest.approx(expected, abs=1e-10 * E * α * rise)
     for i, j in ((0, 0), (1, 1), (0, 1)):
-        assert _mean(elastic, abs(σ[i, j])) < 1e-10 * E * α * rise
+        assert _mean(elastic, [abs(σ[i, j]) for σ in stresses]) < 1e-10 * E * α * rise
 
 
-def _mean(elastic, density):
-    """Mean over both blocks."""
-    mesh = elastic.bodies.mesh
-    total = fem.assemble_scalar(fem.form(density * ufl.dx(mesh)))
-    area = fem.assemble_scalar(fem.form(fem.Constant(mesh, 1.0) * ufl.dx(mesh)))
-    return mesh.comm.allreduce(total) / mesh.comm.allreduce(area)
+def _mean(elastic, densities):
+    """Mean over both blocks of a density in each."""
+    meshes = [body.mesh for body in elastic.bodies.each]
+    total = integral(
+        elastic.bodies, *(f * ufl.dx(m) for f, m in zip(densities, meshes, strict=True))
+    )
+    return total / integral(elastic.bodies, *(fem.Constant(m, 1.0) * ufl.dx(m) for m in meshes))
 
 
 def test_volumes():
     """requirement: plane models integrate over thickness, axisymmetric ones over the circle."""
-    mesh = build(PlaneStrain(THICKNESS), 1, clamped=("upper_end",)).bodies.mesh
+    mesh = build(PlaneStrain(THICKNESS), 1, clamped=("upper_end",)).bodies.each[0].mesh
     one = fem.Constant(mesh, 1.0)
     section = fem.assemble_scalar(fem.form(one * ufl.dx(mesh)))
     plane = fem.assemble_scalar(fem.form(PLANE[0].integral(mesh, one, ufl.dx)))
@@ -132,8 +127,7 @@ def test_symmetric_side_rolls():
     sides = ("upper_inside", "lower_inside")
     elastic = elasticity(bodies, PLANE[0], 2, materials, ["upper_end", "lower_end"], sides)
     load = nodal(elastic, lambda x: np.array([np.ones(x.shape[1]), -np.ones(x.shape[1])]))
-    u = as_function(elastic.space, elastic.solve(load), "u").x.array.reshape(-1, 2)
-    x = elastic.space.tabulate_dof_coordinates()
+    u, x = elastic.solve(load).reshape(-1, 2), elastic.nodes()
     side = (np.abs(x[:, 0] - 0.05) < 1e-12) & (x[:, 1] > -0.029) & (x[:, 1] < 0.019)
     assert side.sum() > 4
     assert np.abs(u[side, 0]).max() == 0.0

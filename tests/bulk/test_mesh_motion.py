@@ -14,7 +14,7 @@ import pytest
 from tests.conftest import two_blocks
 from tests.contact.solids import MATCHING, bent, skewed, turned, two_solids
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.mesh_motion import HarmonicExtension, serial_extension
+from thermowear.bulk.mesh_motion import extended, serial_extension
 from thermowear.geometry.mesh.nodes import boundary
 
 from ..test_parallel import ROOT
@@ -36,7 +36,7 @@ def test_harmonic_polynomials_of_the_plane(order, triangles):
     known = np.column_stack([(z**order).real, (z**order).imag])
     given = np.where(inside(mesh)[:, None], np.nan, known)  # as values inside are ignored
     assert np.isnan(given).any()
-    found = HarmonicExtension(distribute(mesh, MPI.COMM_SELF).mesh)(given)
+    found = extended(distribute(mesh, MPI.COMM_SELF), given)
     assert found == pytest.approx(known, abs=1e-12)
     assert np.array_equal(found[~inside(mesh)], given[~inside(mesh)])
 
@@ -49,9 +49,7 @@ def test_harmonic_polynomials_in_space(order, place):
     x, y, z = 10 * mesh.points.T
     known = np.column_stack([x - 2 * y + z, x**2 + y**2 - 2 * z**2, x * y * z])[:, :order]
     known = np.column_stack([known, x + 1])
-    found = HarmonicExtension(distribute(mesh, MPI.COMM_SELF).mesh)(
-        np.where(inside(mesh)[:, None], 0.0, known)
-    )
+    found = extended(distribute(mesh, MPI.COMM_SELF), np.where(inside(mesh)[:, None], 0.0, known))
     assert found == pytest.approx(known, abs=1e-12)
 
 
@@ -61,7 +59,7 @@ def test_bodies_follow_their_own_boundary():
     upper = np.unique(mesh.cells[mesh.cell_tags == 1])
     given = np.zeros_like(mesh.points)
     given[upper] = np.sin(100 * mesh.points[upper])
-    found = HarmonicExtension(distribute(mesh, MPI.COMM_SELF).mesh)(given)
+    found = extended(distribute(mesh, MPI.COMM_SELF), given)
     assert np.all(np.delete(found, upper, axis=0) == 0.0)
     moved = inside(mesh) & np.isin(np.arange(len(found)), upper)
     low, high = given[upper].min(axis=0), given[upper].max(axis=0)
@@ -104,11 +102,11 @@ from mpi4py import MPI
 import numpy as np
 from tests.contact.solids import bent, two_solids
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.mesh_motion import HarmonicExtension
+from thermowear.bulk.mesh_motion import extended
 mesh = two_solids(order=2, maps=(bent, bent))
 given = np.sin(80 * mesh.points)
 comms = MPI.COMM_SELF, MPI.COMM_WORLD
-serial, parallel = (HarmonicExtension(distribute(mesh, comm).mesh)(given) for comm in comms)
+serial, parallel = (extended(distribute(mesh, comm), given) for comm in comms)
 assert np.abs(serial - given).max() > 1e-3
 off = MPI.COMM_WORLD.gather(np.abs(parallel - serial).max())
 if MPI.COMM_WORLD.rank == 0:

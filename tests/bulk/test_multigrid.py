@@ -6,8 +6,7 @@ import ufl
 
 from thermowear.bulk import solver_choice
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.compiled import assembled_matrix, nodal_loads
-from thermowear.bulk.field import lagrange_space, total
+from thermowear.bulk.compiled import assembled_matrix
 from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.heat_equation import (
     ThermalMaterial,
@@ -19,6 +18,7 @@ from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.multigrid_solver import MultigridSolver
 from thermowear.bulk.solver_choice import SolverChoice, choose_solver, count_unknowns, factor_memory
+from thermowear.bulk.spaces import block_diagonal, lagrange_spaces
 from thermowear.errors import ComputationError
 
 from ..conftest import two_blocks
@@ -42,7 +42,7 @@ def pulled(problem):
     """Loads that bend and press both bodies."""
     on_face = problem.surface_work("upper_face", np.array([1.0, 2.0, -5.0]))
     on_side = problem.surface_work("lower_high_x", np.array([1.0, 0.0, -3.0]))
-    return nodal_loads(problem.space, on_face) + nodal_loads(problem.space, on_side)
+    return problem.spaces.loads(on_face) + problem.spaces.loads(on_side)
 
 
 @pytest.mark.parametrize(
@@ -61,13 +61,13 @@ def test_displacements_of_the_direct_solver(cell_type, order, degree):
     supports = {"symmetric": ("upper_low_x",), "rollers": ("lower_low_y",)}
     direct = elastic(bodies, degree, None, **supports)
     multigrid = elastic(bodies, degree, MULTIGRID, **supports)
-    assert isinstance(multigrid.factor, MultigridSolver)
+    assert all(isinstance(body.factor, MultigridSolver) for body in multigrid.each)
     expected = direct.solve(pulled(direct))
     found = multigrid.solve(np.column_stack([pulled(multigrid), -2 * pulled(multigrid)]))
     tolerance = 1e-7 * np.abs(expected).max()
     np.testing.assert_allclose(found[:, 0], expected, rtol=0.0, atol=tolerance)
     np.testing.assert_allclose(found[:, 1], -2 * expected, rtol=0.0, atol=2 * tolerance)
-    assert max(multigrid.factor.iterations) <= 30
+    assert max(k for body in multigrid.each for k in body.factor.iterations) <= 30
 
 
 def test_iterations_do_not_grow_with_the_number_of_unknowns():
@@ -76,7 +76,7 @@ def test_iterations_do_not_grow_with_the_number_of_unknowns():
     for n in (3, 6):
         problem = elastic(solids(n), 2, MULTIGRID)
         problem.solve(pulled(problem))
-        counts += problem.factor.iterations
+        counts += [k for body in problem.each for k in body.factor.iterations]
     assert max(counts) <= 18, counts
 
 
@@ -91,8 +91,9 @@ def test_a_body_without_support_is_an_error():
 @pytest.mark.parametrize("degree", [1, 2, 3])
 def test_unknowns_are_counted_without_a_space(cell_type, degree):
     """requirement: the number of unknowns of the choice is that of the space."""
-    mesh = solids(2, cell_type).mesh
-    assert count_unknowns(mesh, degree) == total(lagrange_space(mesh, degree, 3))
+    bodies = solids(2, cell_type)
+    counted = sum(count_unknowns(body.mesh, degree) for body in bodies.each)
+    assert counted == lagrange_spaces(bodies, degree, 3).total
 
 
 @pytest.mark.parametrize(
@@ -133,26 +134,28 @@ def test_sections_are_factorised():
 def test_heat_carried_along(speed):
     """requirement: temperatures and adjoints of the direct solver at any Péclet number, to 1e-7."""
     bodies, kinematics = solids(3), Spatial()
-    space = lagrange_space(bodies.mesh, 2)
-    T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
-    (form,) = transferring(bodies, kinematics, {"upper_face": 1e4, "lower_face": 1e4})
+    spaces, baths = lagrange_spaces(bodies, 2), []
+    for body, space in zip(bodies.each, spaces.each, strict=True):
+        T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
+        (form,) = transferring(body, kinematics, {"upper_face": 1e4, "lower_face": 1e4})
+        baths.append(assembled_matrix(form(T, δT)))
     materials = {"upper": ThermalMaterial(5.0, 3.5e6), "lower": ThermalMaterial(50.0, 3.5e6)}
     cooling, passage = {"upper_end": 500.0}, Passage(("lower",), None, -speed, spread=False)
     both = [
         conduction(
             bodies,
             kinematics,
-            space,
+            spaces,
             materials,
             cooling,
             {"lower_end": 20.0},
-            assembled_matrix(form(T, δT)),
+            block_diagonal(baths),
             passage,
             choice,
         )
         for choice in (None, MULTIGRID)
     ]
-    heat = surface_heat(bodies, kinematics, space, "lower_face", 1e5)
+    heat = surface_heat(bodies, kinematics, spaces, "lower_face", 1e5)
     assert isinstance(both[1].factor, MultigridSolver)
     for answer in (lambda c: c.solve(heat), lambda c: c.adjoint_response(heat[:, None])):
         expected, found = map(answer, both)

@@ -7,7 +7,6 @@ from mpi4py import MPI
 import numpy as np
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.compiled import nodal_loads
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.geometry.meshing.cells import level, mesh_lattice, tagged_bodies
@@ -30,12 +29,11 @@ def test_layers_in_series():
     bodies = distribute(bar() if COMM.rank == 0 else None, COMM)
     materials = {"bar": ElasticMaterial(2e9, 0.0), "core": ElasticMaterial(5e10, 0.0)}
     elastic = elasticity(bodies, Spatial(), 2, materials, ["bar_bottom"])
-    u = elastic.solve(nodal_loads(elastic.space, elastic.pressure_work("bar_top", 3e6))).reshape(
-        -1, 3
-    )
+    u = elastic.solve(elastic.spaces.loads(elastic.pressure_work("bar_top", 3e6))).reshape(-1, 3)
     top = np.abs(elastic.nodes()[:, 2] - 0.04) < 1e-12
     np.testing.assert_allclose(u[top, 2], -3e6 * (0.02 / 2e9 + 0.02 / 5e10), rtol=1e-9)
-    parts = bodies.parts_of_cells(np.arange(bodies.mesh.topology.index_map(3).size_local))
+    (body,) = bodies.each
+    parts = body.parts_of_cells(np.arange(body.n_cells))
     assert COMM.allreduce(int(parts.sum())) == 4
     assert bodies.names == ("bar", "core")
     assert COMM.allreduce(len(parts)) == 12

@@ -5,23 +5,18 @@ from mpi4py import MPI
 import numpy as np
 import pytest
 import ufl
-from dolfinx import fem
 
-from thermowear.bulk.field import as_function, lagrange_space, owned
 from thermowear.bulk.kinematics import Spatial, kinematics_of
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.case.tables.conditions import MotionTable
 from thermowear.contact.operators.rigid_motion import sliding
-from thermowear.parallel import sum_over_ranks
 
 from ..contact.solids import HEIGHTS, MODULI, SIZE, bent, elastic_bodies, gathered, straight, turned
 from ..contact.solids import two_solids as solids
+from .fields import integral, interpolated, times
 
 COMM = MPI.COMM_WORLD
 DIVISIONS = ((3, 2, 2), (2, 3, 2))
-
-
-def integral(mesh, density):
-    return sum_over_ranks(COMM, fem.assemble_scalar(fem.form(density * ufl.dx(domain=mesh))))
 
 
 @pytest.mark.parametrize("order", [1, 2, 3])
@@ -29,12 +24,10 @@ def integral(mesh, density):
 def test_the_bodies_have_their_volume(place, order):
     """requirement: nodes of cells of every order are numbered correctly."""
     bodies, _ = gathered(solids(DIVISIONS, order, (place, place)))
-    mesh = bodies.mesh
-    one = fem.Constant(mesh, 1.0)
-    for name, height in zip(MODULI, HEIGHTS, strict=True):
-        only = bodies.per_body({name: 1.0})
-        x, y, _ = ufl.SpatialCoordinate(mesh)
-        volume, moment = integral(mesh, one * only), integral(mesh, only * (x + 2 * y))
+    for body, name, height in zip(bodies.each, MODULI, HEIGHTS, strict=True):
+        only, dx = body.per_part({name: 1.0}), ufl.dx(domain=body.mesh)
+        x, y, _ = ufl.SpatialCoordinate(body.mesh)
+        volume, moment = integral(bodies, only * dx), integral(bodies, only * (x + 2 * y) * dx)
         if place is turned:
             allowed = {1: 0.2, 2: 2e-2, 3: 5e-4}[order]
             expected = height * np.pi / 4 * (0.09**2 - 0.05**2)
@@ -52,20 +45,17 @@ def test_uniform_strain(order, degree):
     bodies, _ = gathered(solids(DIVISIONS, order, (bent, bent)))
     elastic = elastic_bodies(bodies, degree, 0.3)
     H = 1e-3 * np.array([[1.0, -0.7, 0.2], [0.4, 2.0, 0.5], [-0.3, 0.1, -1.5]])
-    u = fem.Function(elastic.space)
-    u.interpolate(lambda x: H @ x)
+    displacement = interpolated(elastic.spaces, lambda x: H @ x)
     strain, E, ν = (H + H.T) / 2, MODULI["upper"], 0.3
     expected = E / (1 + ν) * (strain + ν / (1 - 2 * ν) * np.trace(strain) * np.eye(3))
-    only = bodies.per_body({"upper": 1.0, "lower": 0.0})
-    volume = HEIGHTS[0] * SIZE[0] * SIZE[1]
-    σ = elastic.stress(u)
+    volume, upper = HEIGHTS[0] * SIZE[0] * SIZE[1], elastic.each[0]
+    assert upper.body.parts == ("upper",)
+    σ = upper.stress(elastic.spaces.functions(displacement, "u")[0])
     for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)):
-        mean = integral(bodies.mesh, only * σ[i, j]) / volume
+        mean = integral(bodies, σ[i, j] * ufl.dx) / volume
         assert mean == pytest.approx(expected[i, j], rel=1e-9)
-    x, y = elastic.stiffness.createVecs()
-    x.setArray(u.x.array[: owned(elastic.space)])
-    elastic.stiffness.mult(x, y)
-    forces, places = y.getArray().reshape(-1, 3), elastic.nodes()
+    forces = times(elastic.stiffness, displacement).reshape(-1, 3)
+    places = elastic.nodes()
     low, high = (0.0, 0.0, -HEIGHTS[1]), (*SIZE, HEIGHTS[0])
     inside = np.all((places > np.add(low, 1e-6)) & (places < np.subtract(high, 1e-6)), axis=1)
     inside &= np.abs(places[:, 2]) > 1e-6
@@ -78,22 +68,16 @@ def test_free_expansion_is_free_of_stress():
     bodies, _ = gathered(solids(DIVISIONS, 1, (bent, bent)))
     α, rise, ν = 1.2e-5, 80.0, 0.3
     elastic = elastic_bodies(bodies, 2, ν, α)
-    heat = lagrange_space(bodies.mesh, 2)
-    warm = as_function(heat, np.full(owned(heat), rise), "rise")
-    grown = fem.Function(elastic.space)
-    grown.interpolate(lambda x: α * rise * x)
-    σ = elastic.stress(grown, warm)
-    root_mean = (integral(bodies.mesh, ufl.inner(σ, σ)) / (sum(HEIGHTS) * SIZE[0] * SIZE[1])) ** 0.5
+    heat = lagrange_spaces(bodies, 2)
+    warm, grown = np.full(heat.owned, rise), interpolated(elastic.spaces, lambda x: α * rise * x)
+    fields = elastic.spaces.functions(grown, "u"), heat.functions(warm, "rise")
+    stresses = [body.stress(u, T) for body, u, T in zip(elastic.each, *fields, strict=True)]
+    squares = integral(bodies, *(ufl.inner(σ, σ) * ufl.dx for σ in stresses))
+    root_mean = (squares / (sum(HEIGHTS) * SIZE[0] * SIZE[1])) ** 0.5
     assert root_mean < 1e-11 * α * rise * MODULI["upper"]
-    load = elastic.thermal_load(heat)
-    right, forces = load.createVecs()
-    right.setArray(warm.x.array[: owned(heat)])
-    load.mult(right, forces)
-    x, y = elastic.stiffness.createVecs()
-    x.setArray(grown.x.array[: owned(elastic.space)])
-    elastic.stiffness.mult(x, y)
-    left = y.getArray() - forces.getArray()
-    assert np.abs(left).max() < 1e-10 * np.abs(forces.getArray()).max()
+    forces = times(elastic.thermal_load(heat), warm)
+    left = times(elastic.stiffness, grown) - forces
+    assert np.abs(left).max() < 1e-10 * np.abs(forces).max()
 
 
 def test_no_thickness():

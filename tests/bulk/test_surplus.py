@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 from mpi4py import MPI
 
 import numpy as np
@@ -10,8 +12,8 @@ import ufl
 from dolfinx import fem
 from dolfinx import mesh as dmesh
 
-from thermowear.bulk.field import lagrange_space, total
-from thermowear.bulk.mechanics.surplus import surplus_space
+from thermowear.bulk.mechanics.surplus import surplus_spaces
+from thermowear.bulk.spaces import lagrange_spaces
 
 MESHES = {
     "quadrilateral": lambda: dmesh.create_unit_square(
@@ -22,17 +24,22 @@ MESHES = {
 }
 
 
+def one_body(mesh):
+    return SimpleNamespace(each=(SimpleNamespace(mesh=mesh),))
+
+
 @pytest.mark.parametrize("degree", [1, 2, 3])
 @pytest.mark.parametrize("cell", MESHES)
 def test_space_and_surplus_make_the_next_degree(cell, degree):
     """requirement: space and surplus together are the complete space of the next degree."""
-    mesh = MESHES[cell]()
-    surplus, low, high = (
-        surplus_space(mesh, degree),
-        lagrange_space(mesh, degree),
-        lagrange_space(mesh, degree + 1),
+    body = one_body(MESHES[cell]())
+    spaces = (
+        surplus_spaces(body, degree),
+        lagrange_spaces(body, degree),
+        lagrange_spaces(body, degree + 1),
     )
-    assert total(low) + total(surplus) == total(high)
+    assert spaces[0].total + spaces[1].total == spaces[2].total
+    surplus, low, high = (each for space in spaces for each in space.each)
     field, same, none = fem.Function(surplus), fem.Function(high), fem.Function(low)
     field.x.array[:] = np.linspace(-1.0, 2.0, len(field.x.array))
     same.interpolate(field)
@@ -45,8 +52,9 @@ def test_space_and_surplus_make_the_next_degree(cell, degree):
 def test_hexahedra_take_what_leads():
     """requirement: in 3D the surplus belongs to edges; x³ is in the sum of both spaces."""
     mesh = dmesh.create_unit_cube(MPI.COMM_WORLD, 1, 1, 1, dmesh.CellType.hexahedron)
-    surplus, low = surplus_space(mesh, 2), lagrange_space(mesh, 2)
-    assert total(surplus) == 12
+    body = one_body(mesh)
+    assert surplus_spaces(body, 2).total == 12
+    surplus, low = surplus_spaces(body, 2).each[0], lagrange_spaces(body, 2).each[0]
     x = ufl.SpatialCoordinate(mesh)
     u, v, field = ufl.TrialFunction(surplus), ufl.TestFunction(surplus), fem.Function(low)
     field.interpolate(lambda p: p[0] ** 3)

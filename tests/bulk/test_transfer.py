@@ -7,7 +7,7 @@ from mpi4py import MPI
 import numpy as np
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import lagrange_space
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.bulk.transfer import transferred
 from thermowear.verification.check import starter
 
@@ -20,18 +20,16 @@ def _carried(amount):
     punch = np.unique(mesh.cells[mesh.cell_tags == 1])
     points[punch, 1] += amount * (1 - mesh.points[punch, 1] / 0.05)
     old, new = (distribute(m, MPI.COMM_WORLD) for m in (mesh, replace(mesh, points=points)))
-    spaces = [lagrange_space(bodies.mesh, 6) for bodies in (old, new)]
+    spaces = [lagrange_spaces(bodies, 6) for bodies in (old, new)]
+    before, after = (_field(*each) for each in zip(spaces, (old, new), strict=True))
+    found, error = transferred(before, *spaces, old, new)
+    return found, after, error
 
-    def field(space):
-        r, z, _ = space.tabulate_dof_coordinates().T
-        # a jump between the bodies, for they meet
-        bodies = old if space is spaces[0] else new
-        above = np.zeros(len(r), dtype=bool)
-        above[np.unique(space.dofmap.list[bodies.cell_tags.find(1)])] = True
-        return np.sin(40 * r) * np.exp(20 * z) + 5.0 * above
 
-    found, error = transferred(field(spaces[0]), *spaces, old, new, [("punch",), ("plate",)])
-    return found, field(spaces[1]), error
+def _field(spaces, bodies):
+    """Smooth field with a jump between the bodies, for they meet."""
+    r, z = spaces.nodes().T
+    return np.sin(40 * r) * np.exp(20 * z) + 5.0 * spaces.nodes_of(bodies, "punch")
 
 
 def test_the_field_stays_where_it_is_in_space():
@@ -53,17 +51,9 @@ def test_a_field_on_cells_of_another_number():
         distribute(starter("annular-punch", f"mesh.elements={n}").tagged_mesh(), MPI.COMM_WORLD)
         for n in (8, 11)
     )
-    spaces = [lagrange_space(bodies.mesh, 6) for bodies in (old, new)]
-
-    def field(space, bodies):
-        r, z, _ = space.tabulate_dof_coordinates().T
-        above = np.zeros(len(r), dtype=bool)
-        above[np.unique(space.dofmap.list[bodies.cell_tags.find(1)])] = True
-        return np.sin(40 * r) * np.exp(20 * z) + 5.0 * above
-
-    values = field(spaces[0], old)
-    found, error = transferred(values, *spaces, old, new, [("punch",), ("plate",)])
-    expected = field(spaces[1], new)
+    spaces = [lagrange_spaces(bodies, 6) for bodies in (old, new)]
+    values, expected = _field(spaces[0], old), _field(spaces[1], new)
+    found, error = transferred(values, *spaces, old, new)
     assert len(expected) != len(values)
     assert np.abs(found - expected).max() < 1e-4
     assert 0.0 < error < 1e-4

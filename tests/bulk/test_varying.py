@@ -1,20 +1,20 @@
 """Conductivity and expansion that change with temperature."""
 
 from mpi4py import MPI
-from petsc4py import PETSc
 
 import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.heat.varying import thermal_forces, varying_conduction, varying_expansion
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.case.tables.tabulated import ExpansionTable, TemperatureTable
 
 from ..conftest import two_blocks
+from .fields import empty_matrix
 
 AMBIENT = 293.15
 TABLE = {"at": ["20 degC", "120 degC", "220 degC"], "factor": [1.0, 1.4, 1.1]}
@@ -41,14 +41,10 @@ def two_rings():
 
 def varying(degree=4):
     bodies = two_rings()
-    space = lagrange_space(bodies.mesh, degree)
-    n = (owned(space), space.dofmap.index_map.size_global)
-    no_bath = PETSc.Mat().createAIJ((n, n), comm=bodies.mesh.comm)
-    no_bath.setUp()
-    no_bath.assemble()
+    spaces = lagrange_spaces(bodies, degree)
     k = {"upper": ThermalMaterial(50.0), "lower": ThermalMaterial(15.0)}
     surfaces = {"upper_end": 300.0}, {"lower_end": 12.0}
-    constant = conduction(bodies, Axisymmetric(), space, k, *surfaces, no_bath)
+    constant = conduction(bodies, Axisymmetric(), spaces, k, *surfaces, empty_matrix(spaces))
     factors = {"upper": TemperatureTable(**TABLE).table}
     return varying_conduction(constant, bodies, Axisymmetric(), k, factors, AMBIENT)
 
@@ -56,7 +52,7 @@ def varying(degree=4):
 def test_tangent_is_the_derivative():
     """requirement: the tangent is consistent with the nonlinear fluxes and their derivative."""
     conducting = varying()
-    x = conducting.space.tabulate_dof_coordinates()[: owned(conducting.space)]
+    x = conducting.spaces.nodes()
     rise, change = 80 + 500 * x[:, 1], 1e-3 * np.sin(40 * x[:, 0])
 
     def flows(values):
@@ -85,7 +81,7 @@ def test_heat_balances():
     for _ in range(30):
         tangent = conducting.tangent(rise)
         rise = tangent.solve(heat + conducting.linearisation_error(rise, rise))
-    put_in = conducting.space.mesh.comm.allreduce(heat.sum())
+    put_in = conducting.spaces.comm.allreduce(heat.sum())
     assert sum(conducting.losses(rise, heat)) == pytest.approx(put_in, rel=1e-10)
     assert conducting.exchanged_heat(rise, heat) == pytest.approx(put_in, rel=1e-10)
 
@@ -99,11 +95,11 @@ def test_free_expansion(rise):
     elastic = elasticity(
         bodies, Axisymmetric(), 3, materials, [], rollers=("upper_end", "lower_end")
     )
-    space = lagrange_space(bodies.mesh, 3)
+    spaces = lagrange_spaces(bodies, 3)
     factor = ExpansionTable(**TABLE).table
-    parts = varying_expansion(elastic, space, {"upper": factor}, AMBIENT)
-    load = elastic.thermal_load(space)
-    forces = thermal_forces(load, parts, np.full(owned(space), rise))
+    parts = varying_expansion(elastic, spaces, {"upper": factor}, AMBIENT)
+    load = elastic.thermal_load(spaces)
+    forces = thermal_forces(load, parts, np.full(spaces.owned, rise))
     moved = elastic.solve(forces).reshape(-1, 2)
     nodes = elastic.nodes()
     upper = elastic.owned_by("upper")

@@ -94,7 +94,7 @@ def condensed(tagged, degree, poisson_ratio=0.0, force=1.0, rigid_modes=None, **
     bodies, faces = gathered(tagged)
     elastic = elastic_bodies(bodies, degree, poisson_ratio, **supports)
     pairing = pair(*faces, Spatial(), degree + 2)
-    trace = gap_trace(elastic.space, pairing)
+    trace = gap_trace(elastic.spaces, pairing)
     basis = pressure_basis(pairing, max(degree - 1, 1))
     rigid_modes = rigid_modes or [RigidMode(translation((0.0, 0.0, -1.0)), load=force)]
     holder = hold(pairing, pairing.normals, rigid_modes)

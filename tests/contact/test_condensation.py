@@ -38,7 +38,7 @@ def condensed(degree, columns, poisson_ratio=0.3):
         Axisymmetric(),
         degree + 2,
     )
-    trace = gap_trace(elastic.space, pairing)
+    trace = gap_trace(elastic.spaces, pairing)
     basis = pressure_basis(pairing, max(degree - 1, 1))
     holder = hold(pairing, pairing.normals, [RigidMode(translation((0.0, -1.0)), load=1.0)])
     contact = condense(elastic, pairing, trace, trace, basis, holder)
@@ -93,7 +93,7 @@ def test_another_friction_needs_no_new_solution(columns, monkeypatch):
     holder = hold(pairing, pairing.normals, [RigidMode(translation((0.0, -1.0)), load=1.0)])
     λ = np.random.default_rng(1).uniform(0, 1e8, basis.shape[1])
     for friction in (-0.3, 0.6):
-        traction = vector_trace(elastic.space, pairing, pairing.normals + friction * along)
+        traction = vector_trace(elastic.spaces, pairing, pairing.normals + friction * along)
         u = elastic.solve(traction @ (pairing.weights * (basis @ λ)))
         with monkeypatch.context() as patch:
             patch.setattr(type(elastic), "solve", None)

@@ -15,9 +15,9 @@ import pytest
 
 from thermowear import ComputationError
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.full.edge_deflection import edge_deflection, wave_compliance
 from thermowear.contact.full.equations import Loading
 from thermowear.contact.full.full_system import FullContact, step_length
@@ -34,6 +34,7 @@ from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.parallel import sum_over_ranks
 
+from ..bulk.fields import times
 from ..conftest import two_blocks
 
 COMM = MPI.COMM_WORLD
@@ -58,7 +59,7 @@ def build(degree, columns, rows=(2, 2), name="plane-strain", poisson_ratio=0.3, 
     return SimpleNamespace(
         elastic=elastic,
         pairing=pairing,
-        trace=gap_trace(elastic.space, pairing),
+        trace=gap_trace(elastic.spaces, pairing),
         stress=normal_traction(elastic, pairing),
         modes=(pairing.normals @ [0.0, -1.0])[:, None],
         bump=(pairing.points[:, 0] - 0.07) ** 2 / 4.0,
@@ -73,7 +74,7 @@ def method(case, kind, factor=1.0, friction=0.0, modes=None):
     traction, force_modes = case.trace, modes
     if friction:
         traction_direction = pairing.normals + friction * np.array([1.0, 0.0])
-        traction = vector_trace(elastic.space, pairing, traction_direction)
+        traction = vector_trace(elastic.spaces, pairing, traction_direction)
     operators = elastic, pairing, case.trace, traction, modes, force_modes
     if kind == "penalty":
         return FullContact(*operators, factor * default_penalty(elastic, pairing))
@@ -191,7 +192,7 @@ def test_friction_in_the_section(kind):
     """requirement: a sliding contact is the condensed one, unsymmetric; friction shifts it."""
     case = build(3, (14, 14), (3, 3))
     traction_direction = case.pairing.normals + 0.4 * np.array([1.0, 0.0])
-    trace = vector_trace(case.elastic.space, case.pairing, traction_direction)
+    trace = vector_trace(case.elastic.spaces, case.pairing, traction_direction)
     closed = np.zeros(len(case.bump))
     expected, motion = condensed(case, 2, closed, np.array([1e5]), trace)
     solution = method(case, kind, 10.0, friction=0.4).solve(closed, np.array([1e5]))
@@ -240,21 +241,15 @@ def test_hot_bodies(kind):
     the faces of rods that just touch press with E α ΔT/(1 - 2ν).
     """
     case = build(2, (3, 4), rollers=SIDES)
-    space = lagrange_space(case.elastic.bodies.mesh, 2)
-    load = case.elastic.thermal_load(space)
-    rise, forces = load.createVecs()
-    rise.setArray(np.full(owned(space), 50.0))
-    load.mult(rise, forces)
-    at_face = value_trace(space, case.pairing.sides[0]).T @ np.full(owned(space), 50.0)
+    spaces = lagrange_spaces(case.elastic.bodies, 2)
+    rise = np.full(spaces.owned, 50.0)
+    forces = times(case.elastic.thermal_load(spaces), rise)
+    at_face = value_trace(spaces, case.pairing.sides[0]).T @ rise
     heat = thermal_traction(case.elastic, case.pairing) * sum_over_ranks(COMM, at_face)
     contact = method(case, kind, modes=np.zeros((len(heat), 0)))
-    solution = contact.solve(
-        0 * heat, np.zeros(0), nodal_loads=-forces.getArray(), thermal_traction=-heat
-    )
+    solution = contact.solve(0 * heat, np.zeros(0), nodal_loads=-forces, thermal_traction=-heat)
     assert not solution.active.any()  # cooled, they part
-    solution = contact.solve(
-        0 * heat, np.zeros(0), nodal_loads=forces.getArray(), thermal_traction=-heat
-    )
+    solution = contact.solve(0 * heat, np.zeros(0), nodal_loads=forces, thermal_traction=-heat)
     modulus = 0.7 / (1.3 * 0.4)
     free = 50 * (1.3 / 0.7) * (1.2e-5 * 0.02 + 2e-5 * 0.03)
     softness = (0.02 / 2e11 + 0.03 / 7e10) / modulus

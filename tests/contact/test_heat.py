@@ -9,10 +9,10 @@ import pytest
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.direct_solver import multiply
-from thermowear.bulk.field import lagrange_space
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.condensation import (
     bath_matrix,
     condense_heat,
@@ -45,12 +45,12 @@ def interface(degree, columns, partition=0.5, given=None, cooling=None):
         Axisymmetric(),
         degree + 2,
     )
-    space = lagrange_space(bodies.mesh, degree)
-    traces = tuple(value_trace(space, side) for side in pairing.sides)
+    spaces = lagrange_spaces(bodies, degree)
+    traces = tuple(value_trace(spaces, side) for side in pairing.sides)
     shift = 1000.0
-    bath = bath_matrix(space, traces, pairing.weights, shift)
+    bath = bath_matrix(spaces, traces, pairing.weights, shift)
     given = {"upper_end": 0.0, "lower_end": 0.0} if given is None else given
-    conducting = conduction(bodies, Axisymmetric(), space, MATERIALS, cooling or {}, given, bath)
+    conducting = conduction(bodies, Axisymmetric(), spaces, MATERIALS, cooling or {}, given, bath)
     basis = pressure_basis(pairing, max(degree - 1, 1))
     face = condense_heat(conducting, pairing.weights, basis, traces, shift, partition)
     still = conducting.solve(np.zeros(len(conducting.fixed)))
@@ -136,9 +136,9 @@ def test_condensed_distortion_equals_the_bodies_own():
         "lower": ElasticMaterial(1e11, 0.2, 2e-5),
     }
     elastic = elasticity(bodies, Axisymmetric(), 5, materials, ["upper_end", "lower_end"])
-    trace = gap_trace(elastic.space, pairing)
+    trace = gap_trace(elastic.spaces, pairing)
     holder = hold(pairing, pairing.normals, [RigidMode(translation((0, -1)), load=1.0)])
-    load = elastic.thermal_load(conducting.space)
+    load = elastic.thermal_load(conducting.spaces)
     answers = influence(elastic, pairing, trace, basis, [load])
     contact, loads = answers.condensed(trace, holder), pressure_loads(trace, answers.weighted)
     opening = ThermalOpening(elastic, loads, [load], answers.per_rise)
@@ -169,8 +169,8 @@ def test_opening_by_temperatures(stored):
     bodies, pairing, conducting, basis, _, _ = interface(2, (2, 3))
     materials = {part: ElasticMaterial(2e11, 0.3, 1.2e-5) for part in MATERIALS}
     elastic = elasticity(bodies, Axisymmetric(), 2, materials, ["upper_end", "lower_end"])
-    trace = gap_trace(elastic.space, pairing)
-    matrices = [elastic.thermal_load(conducting.space, only) for only in (None, "lower")]
+    trace = gap_trace(elastic.spaces, pairing)
+    matrices = [elastic.thermal_load(conducting.spaces, only) for only in (None, "lower")]
     answers = influence(elastic, pairing, trace, basis, matrices)
     loads = pressure_loads(trace, answers.weighted)
     opening = ThermalOpening(elastic, loads, matrices, answers.per_rise if stored else ())

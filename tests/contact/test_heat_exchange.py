@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import lagrange_space
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, Spatial
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.condensation import bath_matrix, condense_heat
 from thermowear.contact.operators.exchange_update import ReferenceExchange
 from thermowear.contact.operators.heat_exchange import baseline_response
@@ -47,7 +47,7 @@ def faces(request):
     bodies = distribute(tagged, COMM)
     sides = (gather_face(bodies, f"{name}_face") for name in ("upper", "lower"))
     pairing = pair(*sides, kinematics, degree + 2)
-    space = lagrange_space(bodies.mesh, degree)
+    space = lagrange_spaces(bodies, degree)
     traces = tuple(value_trace(space, side) for side in pairing.sides)
     bath = bath_matrix(space, traces, pairing.weights, SHIFT)
     conducting = conduction(bodies, kinematics, space, MATERIALS, COOLING, {}, bath)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import lagrange_space
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.condensation import bath_matrix, condense, condense_heat
 from thermowear.contact.operators.heat_exchange import baseline_response
 from thermowear.contact.operators.pressure import pressure_basis
@@ -108,7 +108,7 @@ def plane_contact(model, inner, columns, degree, gap, rigid_modes):
     elastic = elasticity(bodies, model, degree, materials, ["upper_end", "lower_end"])
     faces = (gather_face(bodies, f"{name}_face") for name in MODULI)
     pairing = pair(*faces, model, degree + 2)
-    trace, basis = gap_trace(elastic.space, pairing), pressure_basis(pairing, degree - 1)
+    trace, basis = gap_trace(elastic.spaces, pairing), pressure_basis(pairing, degree - 1)
     holder = hold(pairing, pairing.normals, rigid_modes)
     contact = condense(elastic, pairing, trace, trace, basis, holder)
     x = pairing.points[:, 0]
@@ -173,15 +173,15 @@ def test_two_slabs_with_friction_heat(h, divisions, place, cell_type):
     """requirement: temperatures and fluxes of heat that flows straight down, to 1e-9."""
     bodies, faces = gathered(solids(divisions, 1, (place, place), cell_type))
     pairing = pair(*faces, Spatial(), 4)
-    space = lagrange_space(bodies.mesh, 2)
-    traces = tuple(value_trace(space, side) for side in pairing.sides)
+    spaces = lagrange_spaces(bodies, 2)
+    traces = tuple(value_trace(spaces, side) for side in pairing.sides)
     shift, materials = 1000.0, {"upper": ThermalMaterial(50.0), "lower": ThermalMaterial(15.0)}
-    bath = bath_matrix(space, traces, pairing.weights, shift)
+    bath = bath_matrix(spaces, traces, pairing.weights, shift)
     cold = {"upper_end": 0.0, "lower_end": 0.0}
-    conducting = conduction(bodies, Spatial(), space, materials, {}, cold, bath)
+    conducting = conduction(bodies, Spatial(), spaces, materials, {}, cold, bath)
     basis = pressure_basis(pairing, 1)
     face = condense_heat(conducting, pairing.weights, basis, traces, shift, 0.3)
-    resting = baseline_response(np.zeros(len(conducting.fixed)), traces, bodies.mesh.comm)
+    resting = baseline_response(np.zeros(len(conducting.fixed)), traces, bodies.comm)
     made = np.full(len(pairing.weights), 1e5)
     state = face.exchange(np.full(len(made), h)).state(made, resting)
     slab = HEIGHTS, (50.0, 15.0), (0.0, 0.0)

@@ -7,12 +7,11 @@ from mpi4py import MPI
 
 import numpy as np
 import pytest
-from dolfinx import fem
 
 from thermowear import CaseError
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.kinematics import Axisymmetric
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.face import Face, gather_face
@@ -20,6 +19,7 @@ from thermowear.contact.search.pairing import pair
 from thermowear.contact.search.projection import project
 from thermowear.parallel import sum_over_ranks
 
+from ..bulk.fields import interpolated
 from ..conftest import two_blocks
 
 COMM = MPI.COMM_WORLD
@@ -174,28 +174,22 @@ def test_traces(columns, growth, degree):
     """requirement: E evaluates fields at the points; B = (u2 - u1)·n, open positive."""
     bodies = blocks(columns, growth)
     pairing = pair(*faces(bodies), Axisymmetric(), degree + 2)
-    scalar, vector = lagrange_space(bodies.mesh, degree), lagrange_space(bodies.mesh, degree, 2)
-    field, u = fem.Function(scalar), fem.Function(vector)
-    field.interpolate(lambda x: (x[0] / 0.07) ** degree + 0 * x[1])
-    u.interpolate(lambda x: np.stack([7 + 0 * x[0], x[0] ** degree]))
+    scalar, vector = lagrange_spaces(bodies, degree), lagrange_spaces(bodies, degree, 2)
+    field = interpolated(scalar, lambda x: (x[0] / 0.07) ** degree + 0 * x[1])
+    u = interpolated(vector, lambda x: np.stack([7 + 0 * x[0], x[0] ** degree]))
     lifted = elevated(bodies, vector)
     r = pairing.points[:, 0]
     for side in pairing.sides:
-        values = value_trace(scalar, side).T @ field.x.array[: owned(scalar)]
+        values = value_trace(scalar, side).T @ field
         np.testing.assert_allclose(sum_over_ranks(COMM, values), (r / 0.07) ** degree, rtol=1e-12)
     back = gap_trace(vector, pairing).T
-    assert np.abs(sum_over_ranks(COMM, back @ u.x.array[: owned(vector)])).max() < 1e-12
+    assert np.abs(sum_over_ranks(COMM, back @ u)).max() < 1e-12
     np.testing.assert_allclose(sum_over_ranks(COMM, back @ lifted), 1e-3, rtol=1e-12)
 
 
-def elevated(bodies, space):
+def elevated(bodies, spaces):
     """Body 1 lifted by 1 mm: the gap opens by 1 mm."""
-    cells = bodies.cell_tags.find(bodies.body_tag("upper"))
-    nodes = np.unique(space.dofmap.list[cells])
-    values = np.zeros(owned(space))
-    mine = nodes[nodes < len(values) // 2]
-    values[2 * mine + 1] = 1e-3
-    return values
+    return np.outer(spaces.nodes_of(bodies, "upper"), (0.0, 1e-3)).ravel()
 
 
 def test_unpaired_is_a_part_of_the_length():

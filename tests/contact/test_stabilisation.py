@@ -29,7 +29,7 @@ def materials(poisson_ratio):
 def solve(elastic, pairing, stiffness, theta):
     """A cylinder on deformed blocks; theta None: penalty."""
     modes = (pairing.normals @ [0.0, -1.0])[:, None]
-    trace = gap_trace(elastic.space, pairing)
+    trace = gap_trace(elastic.spaces, pairing)
     stress = None if theta is None else normal_traction(elastic, pairing)
     contact = FullContact(
         elastic, pairing, trace, trace, modes, modes, stiffness, stress, theta or 0

@@ -4,11 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from dolfinx import fem
 
 from thermowear import CaseError
-from thermowear.bulk.field import lagrange_space, owned
 from thermowear.bulk.kinematics import Spatial
+from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.pressure import contact_zones, pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.clipping import parts_opposite
@@ -16,6 +15,7 @@ from thermowear.contact.search.pairing import pair
 from thermowear.contact.search.projection import project
 from thermowear.parallel import sum_over_ranks
 
+from ..bulk.fields import interpolated
 from .solids import COMM, SIZE, bent, gathered, skewed, straight, turned
 from .solids import two_solids as solids
 
@@ -309,32 +309,27 @@ def test_traces(divisions, order, maps, degree, cell_type):
     degree = max(degree, order)
     bodies, (upper, lower) = gathered(solids(divisions, order, maps, cell_type))
     pairing = pair(upper, lower, Spatial(), degree + 2)
-    scalar, vector = lagrange_space(bodies.mesh, degree), lagrange_space(bodies.mesh, degree, 3)
+    scalar, vector = lagrange_spaces(bodies, degree), lagrange_spaces(bodies, degree, 3)
     power = degree // order  # in the cells' own parameters the degree is higher
 
     def field(x):
         return (30 * x[0] - 50 * x[1] + 20 * x[2]) ** power
 
-    values, u = fem.Function(scalar), fem.Function(vector)
-    values.interpolate(field)
-    u.interpolate(lambda x: np.stack([7 + 0 * x[0], x[1], field(x)]))
+    values = interpolated(scalar, field)
+    u = interpolated(vector, lambda x: np.stack([7 + 0 * x[0], x[1], field(x)]))
     expected = field(pairing.points.T)
     for side in pairing.sides:
-        found = value_trace(scalar, side).T @ values.x.array[: owned(scalar)]
+        found = value_trace(scalar, side).T @ values
         np.testing.assert_allclose(sum_over_ranks(COMM, found), expected, atol=1e-11)
     trace = gap_trace(vector, pairing).T
-    assert np.abs(sum_over_ranks(COMM, trace @ u.x.array[: owned(vector)])).max() < 1e-10
+    assert np.abs(sum_over_ranks(COMM, trace @ u)).max() < 1e-10
     lifted = elevated(bodies, vector)
     np.testing.assert_allclose(sum_over_ranks(COMM, trace @ lifted), 1e-3, rtol=1e-11)
 
 
-def elevated(bodies, space):
+def elevated(bodies, spaces):
     """Body 1 lifted by 1 mm: the gap opens by 1 mm."""
-    cells = bodies.cell_tags.find(bodies.body_tag("upper"))
-    nodes = np.unique(space.dofmap.list[cells])
-    values = np.zeros(owned(space))
-    values[3 * nodes[nodes < len(values) // 3] + 2] = 1e-3
-    return values
+    return np.outer(spaces.nodes_of(bodies, "upper"), (0.0, 0.0, 1e-3)).ravel()
 
 
 def test_a_surface_has_no_zones():

@@ -6,10 +6,8 @@ from mpi4py import MPI
 
 import numpy as np
 import pytest
-from dolfinx import fem
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import owned
 from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.full.nitsche import (
@@ -22,6 +20,7 @@ from thermowear.contact.search.pairing import pair
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.parallel import sum_over_ranks
 
+from ..bulk.fields import interpolated
 from ..gmsh_meshes import tagged_mesh
 
 COMM = MPI.COMM_WORLD
@@ -74,9 +73,7 @@ def build(tagged, model, degree, materials=MATERIALS):
 
 def traction_of(elastic, pairing, displacement):
     """S u of a field given at x of shape (3, n)."""
-    u = fem.Function(elastic.space)
-    u.interpolate(displacement)
-    own = u.x.array[: owned(elastic.space)]
+    own = interpolated(elastic.spaces, displacement)
     return sum_over_ranks(COMM, normal_traction(elastic, pairing).T @ own)
 
 

@@ -5,8 +5,6 @@ from mpi4py import MPI
 import numpy as np
 import pytest
 import ufl
-from dolfinx import fem
-from dolfinx.fem.petsc import assemble_vector
 from dolfinx.mesh import meshtags
 
 from thermowear.bulk.bodies import distribute
@@ -98,15 +96,17 @@ def deflection(geometry, modulus, force):
         geometry.symmetry,
         geometry.rollers,
     )
-    facets = np.sort(bodies.facets("beam_load"))
-    loaded = meshtags(bodies.mesh, 1, facets, np.ones(len(facets), dtype=np.int32))
     pressure = force / (geometry.thickness * geometry.load_width)
-    work = -pressure * ufl.TestFunction(elastic.space)[1]
-    measure = ufl.Measure("ds", bodies.mesh, subdomain_data=loaded)(1)
-    load = assemble_vector(fem.form(model.integral(bodies.mesh, work, measure))).getArray()
+
+    def pushed(body):
+        facets = np.sort(body.facets("beam_load"))
+        loaded = meshtags(body.mesh, 1, facets, np.ones(len(facets), dtype=np.int32))
+        measure = ufl.Measure("ds", body.mesh, subdomain_data=loaded)(1)
+        return lambda v: model.integral(body.mesh, -pressure * v[1], measure)
+
+    load = elastic.spaces.loads(map(pushed, bodies.each))
     assert load.sum() == pytest.approx(-force, rel=1e-12)
-    moved = elastic.factor.solve(np.where(elastic.fixed, 0.0, load)).reshape(-1, 2)
-    places = elastic.space.tabulate_dof_coordinates()[:, :2]
+    moved, places = elastic.solve(load).reshape(-1, 2), elastic.nodes()
     below = np.array([geometry.load_position, geometry.gap])
     return -moved[np.linalg.norm(places - below, axis=1).argmin(), 1]
 

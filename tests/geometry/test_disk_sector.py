@@ -47,11 +47,11 @@ def test_bodies_and_surfaces(degree, order, allowed):
     mesh = built(degree)
     assert mesh.order == order
     bodies = distribute(mesh if COMM.rank == 0 else None, COMM)
-    one = fem.Constant(bodies.mesh, 1.0)
     volumes = {"pad": FACE * 0.015, "disk": math.pi * (0.13**2 - 0.06**2) * 0.01}
-    for name, expected in volumes.items():
-        density = one * bodies.per_body({name: 1.0})
-        found = sum_over_ranks(COMM, fem.assemble_scalar(fem.form(density * ufl.dx)))
+    for body, (name, expected) in zip(bodies.each, volumes.items(), strict=True):
+        assert body.parts == (name,)
+        volume = fem.Constant(body.mesh, 1.0) * ufl.dx
+        found = sum_over_ranks(COMM, fem.assemble_scalar(fem.form(volume)))
         assert found == pytest.approx(expected, rel=allowed)
     radii = {"pad_inside": 0.08, "pad_outside": 0.12, "disk_inside": 0.06, "disk_outside": 0.13}
     for surface, radius in radii.items():

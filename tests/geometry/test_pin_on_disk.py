@@ -48,13 +48,9 @@ def built(geometry, zone=None, degree=2, elements=6, **keys):
 def measured(mesh):
     """Volume of each body [m³]."""
     bodies = distribute(mesh if COMM.rank == 0 else None, COMM)
-    one = fem.Constant(bodies.mesh, 1.0)
+    volumes = {body.parts: fem.form(fem.Constant(body.mesh, 1.0) * ufl.dx) for body in bodies.each}
     return {
-        name: sum_over_ranks(
-            COMM,
-            fem.assemble_scalar(fem.form(one * bodies.per_body({name: 1.0}) * ufl.dx)),
-        )
-        for name in mesh.bodies
+        name: sum_over_ranks(COMM, fem.assemble_scalar(form)) for (name,), form in volumes.items()
     }
 
 

@@ -4,11 +4,10 @@ from dataclasses import fields, replace
 
 from mpi4py import MPI
 
-import dolfinx
 import numpy as np
 
 import thermowear as tw
-from thermowear.bulk.bodies import distribute
+from thermowear.bulk.bodies import created_mesh, distributed_tags, in_dolfinx_order
 from thermowear.geometry.mesh.tagged import compact
 from thermowear.simulation.from_case import model_of
 
@@ -20,11 +19,20 @@ CELLS, FACETS = (101, 205, 7, 33), (41, 7, 32, 205, 5, 90, 11, 3, 77)
 
 def own_mesh(tagged):
     """A dolfinx mesh with the user's tags, as read from a file: mesh, cell tags, facet tags."""
-    found = distribute(tagged, MPI.COMM_WORLD)
-    mesh, tdim = found.mesh, found.mesh.topology.dim
+    cells = in_dolfinx_order(tagged, tagged.cell_type, tagged.cells)
+    facets = in_dolfinx_order(tagged, tagged.facet_type, tagged.facets)
+    if MPI.COMM_WORLD.rank:
+        cells, facets = cells[:0], facets[:0]
+    points = tagged.points if MPI.COMM_WORLD.rank == 0 else tagged.points[:0]
+    mesh = created_mesh(MPI.COMM_WORLD, tagged.cell_type, tagged.order, cells, points)
+    tdim = mesh.topology.dim
+    own_tags = (
+        (tdim, cells, tagged.cell_tags, CELLS),
+        (tdim - 1, facets, tagged.facet_tags, FACETS),
+    )
     return mesh, *(
-        dolfinx.mesh.meshtags(mesh, dim, tags.indices, np.array([0, *own], np.int32)[tags.values])
-        for dim, tags, own in ((tdim, found.cell_tags, CELLS), (tdim - 1, found.facet_tags, FACETS))
+        distributed_tags(mesh, dim, entities, np.array([0, *own], np.int32)[tags[: len(entities)]])
+        for dim, entities, tags, own in own_tags
     )
 
 

@@ -7,7 +7,7 @@ from mpi4py import MPI
 import numpy as np
 import pytest
 
-from thermowear.bulk.mesh_motion import HarmonicExtension
+from thermowear.bulk.mesh_motion import extended
 from thermowear.simulation.geometry_update.moving_faces import MovingFaces, movable_body
 from thermowear.simulation.system.building import build
 from thermowear.simulation.system.setup_cache import SetupCache
@@ -38,7 +38,7 @@ def grooved(depth):
     face, body = kept.faces[1], movable_body(system, kept.geometry.mesh, 1)
     amounts = face.offsets(depth(system.pairing.points[:, 0]))
     outlined = body.outlined(face.displacement(amounts))
-    points = kept.geometry.mesh.points + HarmonicExtension(system.bodies.mesh)(outlined)
+    points = kept.geometry.mesh.points + extended(system.bodies, outlined)
     worn = replace(
         kept.geometry,
         mesh=replace(kept.geometry.mesh, points=points),

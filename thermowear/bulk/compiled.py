@@ -54,9 +54,10 @@ def assembled(form: fem.Form) -> np.ndarray:
 
 def surface_area(bodies: Bodies, kinematics: Kinematics, surface: str) -> float:
     """Area of a surface of the solid according to its kinematic model [m²]. Every rank calls."""
-    one = fem.Constant(bodies.mesh, default_scalar_type(1.0))
-    form = kinematics.integral(bodies.mesh, one, bodies.surface_measure(surface))
-    return bodies.mesh.comm.allreduce(fem.assemble_scalar(compiled(form)), op=MPI.SUM)
+    body = bodies.each[bodies.index_of(surface)]
+    one = fem.Constant(body.mesh, default_scalar_type(1.0))
+    form = kinematics.integral(body.mesh, one, body.surface_measure(surface))
+    return bodies.comm.allreduce(fem.assemble_scalar(compiled(form)), op=MPI.SUM)
 
 
 def nodal_loads(space: fem.FunctionSpace, work: Callable) -> np.ndarray:

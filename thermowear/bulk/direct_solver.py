@@ -73,6 +73,10 @@ class DirectSolver:
             reason = _FAILURES.get(code, "see INFOG(1) in the manual of MUMPS")
             raise ComputationError(f"a matrix cannot be factorised (MUMPS error {code}): {reason}")
 
+    def destroy(self) -> None:
+        """Free the memory of the factor."""
+        self._solver.destroy()
+
     @property
     def negative_pivots(self) -> int:
         """Number of negative pivots (eigenvalues, by Sylvester's law) of a symmetric matrix."""

@@ -49,11 +49,6 @@ def owned(space: fem.FunctionSpace) -> int:
     return space.dofmap.index_map.size_local * space.dofmap.index_map_bs
 
 
-def total(space: fem.FunctionSpace) -> int:
-    """Number of values on all ranks."""
-    return space.dofmap.index_map.size_global * space.dofmap.index_map_bs
-
-
 def as_function(space: fem.FunctionSpace, values: np.ndarray, name: str) -> fem.Function:
     """Create a dolfinx function from owned values. Every rank calls."""
     function = fem.Function(space, name=name)

@@ -11,7 +11,7 @@ import ufl
 from dolfinx import fem
 
 from ..compat import geometry_dofmap
-from .bodies import created_mesh, in_dolfinx_order
+from .bodies import Bodies, created_mesh, in_dolfinx_order
 from .compiled import assembled_matrix
 from .direct_solver import DirectSolver, multiply
 from .field import geometry_space, owned
@@ -70,6 +70,27 @@ class HarmonicExtension:
         for points, values in self._comm.allgather((self._number[self._free], found)):
             result[points] = values
         return result
+
+
+def extended(bodies: Bodies, given: np.ndarray) -> np.ndarray:
+    """Harmonic extension of displacements of all boundaries into the bodies. Every rank calls.
+
+    Parameters
+    ----------
+    bodies : Bodies
+    given : ndarray, shape (n_points, gdim)
+        At the points of the tagged mesh; values inside of the bodies are ignored [m].
+
+    Returns
+    -------
+    ndarray, shape (n_points, gdim)
+        The same on all ranks [m].
+    """
+    result = given.copy()
+    for body in bodies.each:
+        numbers = bodies.comm.bcast(body.point_numbers)
+        result[numbers] = HarmonicExtension(body.mesh)(given[numbers])
+    return result
 
 
 def serial_extension(

@@ -22,7 +22,8 @@ from dolfinx.fem.petsc import interpolation_matrix
 
 from ..errors import ComputationError
 from .direct_solver import eliminate
-from .field import as_function, lagrange_space, owned
+from .field import lagrange_space, owned
+from .spaces import Spaces, block_diagonal
 
 RELATIVE_TOLERANCE = 1e-9
 """Reduction of the residual at which a solution is accepted."""
@@ -66,13 +67,13 @@ class MultigridSolver:
     ----------
     matrix : petsc4py.PETSc.Mat
         Assembled, with the rows and columns of fixed values eliminated.
-    space : dolfinx.fem.FunctionSpace
-        Its space.
+    spaces : Spaces
+        Its spaces.
     fixed : ndarray of bool, shape (n_owned,)
         Mask of fixed values.
     coarse : callable, optional
-        Assembles the same problem, without its fixed values, in a space of linear elements on the
-        same mesh; by default the Galerkin product of the matrix with their interpolation.
+        Assembles the same problem, without its fixed values, in spaces of linear elements on the
+        same meshes; by default the Galerkin product of the matrix with their interpolation.
     symmetric : bool, optional
 
     Raises
@@ -86,21 +87,21 @@ class MultigridSolver:
     def __init__(
         self,
         matrix: PETSc.Mat,
-        space: fem.FunctionSpace,
+        spaces: Spaces,
         fixed: np.ndarray,
-        coarse: Callable[[fem.FunctionSpace], PETSc.Mat] | None = None,
+        coarse: Callable[[Spaces], PETSc.Mat] | None = None,
         symmetric: bool = True,
     ):
         self.iterations: list[int] = []
-        self._matrix, self._space, self._fixed = matrix, space, fixed
+        self._matrix, self._spaces, self._fixed = matrix, spaces, fixed
         self._symmetric = symmetric
-        linear = lagrange_space(space.mesh, 1, _components(space))
-        held = _at_vertices(space, fixed, linear)
-        prolongation = _prolongation(linear, space, held, fixed)
+        linear = _linear(spaces)
+        held = _at_vertices(spaces, fixed, linear)
+        prolongation = _prolongation(linear, spaces, held, fixed)
         below = matrix.ptap(prolongation) if coarse is None else coarse(linear)
         eliminate(below, held)
         for level in (matrix, below):
-            level.setBlockSize(space.dofmap.index_map_bs)
+            level.setBlockSize(spaces.components)
             level.setOption(PETSc.Mat.Option.SPD, symmetric)
         below.setNearNullSpace(_near_nullspace(linear, below))
         self._solver = _krylov_solver(matrix, symmetric)
@@ -139,7 +140,7 @@ class MultigridSolver:
     def _transposed(self) -> MultigridSolver:
         """Solver of the transposed matrix. Every rank calls."""
         transposed = self._matrix.copy().transpose()
-        return MultigridSolver(transposed, self._space, self._fixed, symmetric=False)
+        return MultigridSolver(transposed, self._spaces, self._fixed, symmetric=False)
 
     def _solved(self, load: np.ndarray) -> np.ndarray:
         right, x = self._matrix.createVecs()
@@ -172,29 +173,33 @@ def _krylov_solver(matrix: PETSc.Mat, symmetric: bool) -> PETSc.KSP:
     return solver
 
 
-def _components(space: fem.FunctionSpace) -> int:
-    """Number of components of a vector-valued space, 0 of a scalar one."""
-    return 0 if space.dofmap.index_map_bs == 1 else space.dofmap.index_map_bs
+def _linear(spaces: Spaces) -> Spaces:
+    """Spaces of linear elements on the same meshes."""
+    width = 0 if spaces.components == 1 else spaces.components
+    return Spaces(tuple(lagrange_space(space.mesh, 1, width) for space in spaces.each))
 
 
-def _at_vertices(
-    space: fem.FunctionSpace, fixed: np.ndarray, linear: fem.FunctionSpace
-) -> np.ndarray:
+def _at_vertices(spaces: Spaces, fixed: np.ndarray, linear: Spaces) -> np.ndarray:
     """Mask of the fixed values of linear elements, (n_owned,). Every rank calls."""
-    held = fem.Function(linear)
-    held.interpolate(as_function(space, fixed.astype(float), "fixed"))
-    return held.x.array[: owned(linear)] > 0.5
+    held = []
+    for space, function in zip(
+        linear.each, spaces.functions(fixed.astype(float), "fixed"), strict=True
+    ):
+        at_vertices = fem.Function(space)
+        at_vertices.interpolate(function)
+        held.append(at_vertices.x.array[: owned(space)] > 0.5)
+    return np.concatenate(held)
 
 
 def _prolongation(
-    coarse_space: fem.FunctionSpace,
-    space: fem.FunctionSpace,
-    coarse_fixed: np.ndarray,
-    fixed: np.ndarray,
+    linear: Spaces, spaces: Spaces, coarse_fixed: np.ndarray, fixed: np.ndarray
 ) -> PETSc.Mat:
-    """Interpolation of linear elements in the space, zero from and to fixed values."""
-    result = interpolation_matrix(coarse_space, space)
-    result.assemble()
+    """Interpolation of linear elements in the spaces, zero from and to fixed values."""
+    blocks = []
+    for coarse, space in zip(linear.each, spaces.each, strict=True):
+        blocks.append(interpolation_matrix(coarse, space))
+        blocks[-1].assemble()
+    result = block_diagonal(blocks)
     right, left = result.createVecs()
     right.setArray((~coarse_fixed).astype(float))
     left.setArray((~fixed).astype(float))
@@ -202,13 +207,12 @@ def _prolongation(
     return result
 
 
-def _near_nullspace(space: fem.FunctionSpace, matrix: PETSc.Mat) -> PETSc.NullSpace:
-    """Rigid motions of a vector space, constants of a scalar one."""
-    if space.dofmap.index_map_bs == 1:
+def _near_nullspace(spaces: Spaces, matrix: PETSc.Mat) -> PETSc.NullSpace:
+    """Rigid motions of vector spaces, constants of scalar ones."""
+    if spaces.components == 1:
         return PETSc.NullSpace().create(constant=True, comm=matrix.comm)
     places = matrix.createVecRight()
-    dim = space.mesh.geometry.dim
-    nodes = space.tabulate_dof_coordinates()[: owned(space) // dim, :dim]
+    nodes = spaces.nodes()
     places.setArray(nodes.ravel())
-    places.setBlockSize(dim)
+    places.setBlockSize(nodes.shape[1])
     return PETSc.NullSpace().createRigidBody(places)

@@ -13,12 +13,12 @@ from pathlib import Path
 from petsc4py import PETSc
 
 import numpy as np
-from dolfinx import fem
 
 from .bodies import Bodies
 from .direct_solver import DirectSolver
 from .field import reference_element
 from .multigrid_solver import MultigridSolver
+from .spaces import Spaces
 
 AnySolver = DirectSolver | MultigridSolver
 """Solver of the equations of the bodies; both have the same methods."""
@@ -27,8 +27,10 @@ _MEASURED = 61_605, 0.49e9, 1.40
 """Unknowns and bytes of a factor in space, and its growth exponent: measured for bodies of one
 block with elements of degree 2, from 6e4 to 1.8e5 unknowns."""
 _PART = 0.4
-"""Part of the available memory that a factor may take: a second one (of heat), the matrices and
-the workspace of the factorisation need the rest."""
+"""Part of the available memory that the factors of all bodies may take: those of heat, the matrices
+and the workspace of the factorisation need the rest."""
+_PART_MEANWHILE = 0.6
+"""Part of it that the factor of one body may take while its compliance is computed."""
 _MANY = {"tetrahedron": 60_000, "hexahedron": 300_000}
 """Unknowns from which a single solution is faster by multigrid than by a factorisation. Flat
 hexahedra, as of graded meshes of blocks, need three times the iterations (48 instead of 15): at
@@ -49,7 +51,9 @@ class SolverChoice:
     unknowns : int
         Unknowns of the displacement.
     factor_memory : float
-        Estimated memory of a factor of the stiffness; NaN in a section [bytes].
+        Estimated memory of the factors of the stiffness; NaN in a section [bytes].
+    largest_factor : float
+        That of the body with most unknowns [bytes].
     available : float
         Memory available on this machine [bytes].
     single : bool
@@ -60,6 +64,7 @@ class SolverChoice:
     name: str = "direct"
     unknowns: int = 0
     factor_memory: float = float("nan")
+    largest_factor: float = float("inf")
     available: float = float("nan")
     single: bool = False
     reason: str = "default"
@@ -68,6 +73,11 @@ class SolverChoice:
     def iterative(self) -> bool:
         """True for multigrid."""
         return self.name == "multigrid"
+
+    @property
+    def factorises_columns(self) -> bool:
+        """True if a body is factorised for the time of its condensation alone."""
+        return self.iterative and self.largest_factor <= _PART_MEANWHILE * self.available
 
     def note(self) -> str | None:
         """Line for the console; None for small bodies and sections, which are factorised."""
@@ -98,11 +108,13 @@ def choose_solver(asked: str, bodies: Bodies, degree: int, single: bool) -> Solv
     single : bool
         True if the analysis needs a single solution and no compliance.
     """
-    comm = bodies.mesh.comm
-    if bodies.mesh.topology.dim == 2:
+    if bodies.dim == 2:
         return SolverChoice(reason="section")
-    kind, unknowns = bodies.mesh.topology.cell_name(), count_unknowns(bodies.mesh, degree)
-    memory, available = factor_memory(unknowns), comm.bcast(available_memory(), root=0)
+    sizes = [count_unknowns(body.mesh, degree) for body in bodies.each]
+    factors, unknowns = [factor_memory(size) for size in sizes], sum(sizes)
+    memory = sum(factors)
+    kind = bodies.each[int(np.argmax(sizes))].mesh.topology.cell_name()
+    available = bodies.comm.bcast(available_memory(), root=0)
     name, reason = asked, "as given"
     if asked == "auto":
         name, reason = "direct", "the factor fits into the memory"
@@ -110,7 +122,7 @@ def choose_solver(asked: str, bodies: Bodies, degree: int, single: bool) -> Solv
             name, reason = "multigrid", "the factor would not fit into the memory"
         elif single and unknowns >= _MANY[kind] and degree <= _LOW_DEGREE:
             name, reason = "multigrid", "faster for a single solution"
-    return SolverChoice(name, unknowns, memory, available, single, reason)
+    return SolverChoice(name, unknowns, memory, max(factors), available, single, reason)
 
 
 def count_unknowns(mesh, degree: int) -> int:
@@ -125,7 +137,7 @@ def count_unknowns(mesh, degree: int) -> int:
 
 
 def factor_memory(unknowns: int) -> float:
-    """Estimated memory of the factor of a stiffness in space [bytes]."""
+    """Estimated memory of the factor of the stiffness of a body in space [bytes]."""
     reference, size, exponent = _MEASURED
     return size * (unknowns / reference) ** exponent
 
@@ -148,10 +160,10 @@ def available_memory() -> float:
 def linear_solver(
     choice: SolverChoice,
     matrix: PETSc.Mat,
-    space: fem.FunctionSpace,
+    spaces: Spaces,
     fixed: np.ndarray,
     symmetry: str = "definite",
-    coarse: Callable[[fem.FunctionSpace], PETSc.Mat] | None = None,
+    coarse: Callable[[Spaces], PETSc.Mat] | None = None,
 ) -> AnySolver:
     """Set up the chosen solver of a matrix. Every rank calls.
 
@@ -160,7 +172,7 @@ def linear_solver(
     choice : SolverChoice
     matrix : petsc4py.PETSc.Mat
         Assembled, with the rows and columns of fixed values eliminated.
-    space : dolfinx.fem.FunctionSpace
+    spaces : Spaces
     fixed : ndarray of bool, shape (n_owned,)
     symmetry : str
         See `DirectSolver`; indefinite symmetric matrices are always factorised.
@@ -168,5 +180,5 @@ def linear_solver(
         See `MultigridSolver`.
     """
     if choice.iterative and symmetry in ("definite", "none"):
-        return MultigridSolver(matrix, space, fixed, coarse, symmetric=symmetry == "definite")
-    return DirectSolver(matrix, symmetry, dim=space.mesh.topology.dim)
+        return MultigridSolver(matrix, spaces, fixed, coarse, symmetric=symmetry == "definite")
+    return DirectSolver(matrix, symmetry, dim=spaces.dim)

@@ -11,7 +11,9 @@ from dolfinx import fem
 from ..compat import coordinate_element, geometry_dofmap
 from ..lagrange import equispaced, tabulated
 from .bodies import Bodies
+from .body_mesh import BodyMesh
 from .field import as_function, reference_element
+from .spaces import Spaces
 
 _MAX_NEWTON_STEPS = 20
 _CONTROL_POINT = 0.76
@@ -32,11 +34,10 @@ class _Cells(NamedTuple):
 
 def transferred(
     values: np.ndarray,
-    old: fem.FunctionSpace,
-    new: fem.FunctionSpace,
+    old: Spaces,
+    new: Spaces,
     old_bodies: Bodies,
     new_bodies: Bodies,
-    groups: list[tuple[str, ...]],
 ) -> tuple[np.ndarray, float]:
     """Interpolate a scalar field to the nodes of another mesh, body by body. Every rank calls.
 
@@ -44,11 +45,9 @@ def transferred(
     ----------
     values : ndarray, shape (n_owned,)
         Nodal values of the field.
-    old, new : dolfinx.fem.FunctionSpace
-        Spaces of equal degree on meshes of the same cell type.
+    old, new : Spaces
+        Spaces of equal degree on meshes of the same cell types.
     old_bodies, new_bodies : Bodies
-    groups : list of tuple of str
-        Names of the parts of each body.
 
     Returns
     -------
@@ -57,28 +56,30 @@ def transferred(
     error : float
         Largest difference of the two fields at a point between the nodes of each new cell.
     """
-    function = as_function(old, values, "field")
+    parts = zip(
+        old.functions(values, "field"), new.each, old_bodies.each, new_bodies.each, strict=True
+    )
+    found = [_transferred(*each) for each in parts]
+    return np.concatenate([values for values, _ in found]), max(error for _, error in found)
+
+
+def _transferred(
+    function: fem.Function, new: fem.FunctionSpace, old_body: BodyMesh, new_body: BodyMesh
+) -> tuple[np.ndarray, float]:
+    """Interpolate a field to the nodes of another mesh of one body; see `transferred`."""
+    old, values = function.function_space, function.x.array
     count, gdim = new.dofmap.index_map.size_local, old.mesh.geometry.dim
-    result, stays, error = np.zeros(count), np.zeros(count, dtype=bool), 0.0
+    result, stays = np.zeros(count), np.zeros(count, dtype=bool)
     places = new.tabulate_dof_coordinates()[:count, :gdim]
     unchanged = np.array_equal(old.dofmap.list, new.dofmap.list)
     if all(new.mesh.comm.allgather(unchanged)):  # the meshes differ in node positions only
         stays = np.all(places == old.tabulate_dof_coordinates()[:count, :gdim], axis=1)
-        result[stays] = values[stays]
-    field = _Field(old)
-    for parts in groups:
-        cells = _gathered(old_bodies, function, parts)
-        mine = _cells_of(new_bodies, parts)
-        nodes = np.unique(new.dofmap.list[mine])
-        nodes = nodes[nodes < count]
-        nodes = nodes[~stays[nodes]]
-        result[nodes] = field.at(cells, places[nodes])
-    moved = as_function(new, result, "field")
-    for parts in groups:
-        cells, again = _gathered(old_bodies, function, parts), _gathered(new_bodies, moved, parts)
-        at, found = field.between_nodes(again)
-        error = max(error, float(np.abs(field.at(cells, at) - found).max(initial=0.0)))
-    return result, error
+        result[stays] = values[:count][stays]
+    field, cells = _Field(old), _gathered(old_body, function)
+    nodes = np.flatnonzero(~stays)
+    result[nodes] = field.at(cells, places[nodes])
+    at, found = field.between_nodes(_gathered(new_body, as_function(new, result, "field")))
+    return result, float(np.abs(field.at(cells, at) - found).max(initial=0.0))
 
 
 class _Field:
@@ -146,16 +147,10 @@ class _Field:
         return inside, np.linalg.norm(place - inside, axis=1)
 
 
-def _cells_of(bodies: Bodies, parts: tuple[str, ...]) -> np.ndarray:
-    """Cells of a body owned by this rank."""
-    cells = bodies.cells(*parts)
-    return cells[cells < bodies.mesh.topology.index_map(bodies.mesh.topology.dim).size_local]
-
-
-def _gathered(bodies: Bodies, function: fem.Function, parts: tuple[str, ...]) -> _Cells:
+def _gathered(body: BodyMesh, function: fem.Function) -> _Cells:
     """Gather the cells of a body and a field in them from all ranks."""
-    mesh, cells = bodies.mesh, _cells_of(bodies, parts)
-    nodes = mesh.geometry.x[geometry_dofmap(mesh)[cells]][..., : mesh.geometry.dim]
-    values = function.x.array[function.function_space.dofmap.list[cells]]
+    mesh, count = body.mesh, body.n_cells
+    nodes = mesh.geometry.x[geometry_dofmap(mesh)[:count]][..., : mesh.geometry.dim]
+    values = function.x.array[function.function_space.dofmap.list[:count]]
     gathered = mesh.comm.allgather((nodes, values))
     return _Cells(*(np.concatenate([part[k] for part in gathered]) for k in (0, 1)))

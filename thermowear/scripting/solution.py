@@ -127,8 +127,8 @@ class ContactResults(ABC):
         system, heated = self.snapshot.system, self.snapshot.bodies.temperatures
         if system.thermal is None or heated is None:
             raise CaseError("temperature: the model has no heat")
-        space, values = system.thermal.conduction.space, heated.rise + system.thermal.ambient
-        return self.meshes.function(body, system, space, values, "temperature")
+        spaces, values = system.thermal.conduction.spaces, heated.rise + system.thermal.ambient
+        return self.meshes.function(body, system, spaces, values, "temperature")
 
     def displacement(self, body: MeshBody) -> fem.Function:
         """Displacement of a body on its mesh, that of the holder included [m]; NaN outside of it.
@@ -137,8 +137,8 @@ class ContactResults(ABC):
         """
         now = self.snapshot
         values = with_holder(now.system, now.bodies.displacement, now.motion)
-        space = now.system.elastic.space
-        return self.meshes.function(body, now.system, space, values, "displacement")
+        spaces = now.system.elastic.spaces
+        return self.meshes.function(body, now.system, spaces, values, "displacement")
 
     def to_dataframe(self):
         """Pandas frame of the interface, a row per contact point; columns in SI."""

@@ -7,7 +7,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from dolfinx import fem
 
-from ..bulk.field import as_function, basis_element, lagrange_space
+from ..bulk.field import basis_element, lagrange_space
+from ..bulk.spaces import Spaces
 from ..compat import coordinate_element, geometry_dofmap
 from ..errors import CaseError
 from ..geometry.mesh.nodes import CORNERS, FACETS, boundary, reference_nodes
@@ -62,7 +63,7 @@ class UserMeshes:
         self,
         body: MeshBody,
         system: System,
-        space: fem.FunctionSpace,
+        spaces: Spaces,
         values: np.ndarray,
         name: str,
     ) -> fem.Function:
@@ -75,8 +76,8 @@ class UserMeshes:
         ----------
         body : MeshBody
         system : System
-        space : dolfinx.fem.FunctionSpace
-            Space on the mesh of the system.
+        spaces : Spaces
+            Spaces on the meshes of the system.
         values : ndarray, shape (n_owned,)
         name : str
 
@@ -89,10 +90,10 @@ class UserMeshes:
         if system.worn is not None and system.worn.meshed_anew:
             raise CaseError(f"{name}: {body.name!r} has been remeshed; its field has no user mesh")
         first, turned = sum(map(len, self.reversed_cells[:index])), self.reversed_cells[index]
-        by_cell = _by_cell(space, as_function(space, values, name))[first : first + len(turned)]
-        nodes = basis_element(space).points
+        by_cell = _by_cell(system, spaces, values)[first : first + len(turned)]
+        nodes = basis_element(spaces.each[0]).points
         by_cell[turned] = by_cell[turned][:, matching(nodes[:, ::-1], nodes)]
-        return _placed(body, by_cell, space.ufl_element().degree, name)
+        return _placed(body, by_cell, spaces.degree, name)
 
 
 @dataclass(frozen=True)
@@ -237,17 +238,17 @@ def _surfaces(piece: _Piece, kind: str, order: int) -> tuple[np.ndarray, list[st
     return facets[tagged], [f"{piece.name}:{tag}" for tag in piece.tags[named[tagged]]]
 
 
-def _by_cell(space: fem.FunctionSpace, function: fem.Function) -> np.ndarray:
+def _by_cell(system: System, spaces: Spaces, values: np.ndarray) -> np.ndarray:
     """Nodal values of all cells on all ranks, in the order of the tagged mesh.
 
     Shape (n_cells, nodes_per_cell, components).
     """
-    mesh = space.mesh
-    count = mesh.topology.index_map(mesh.topology.dim).size_local
-    nodal = function.x.array.reshape(-1, space.dofmap.index_map_bs)
-    own = mesh.topology.original_cell_index[:count], nodal[space.dofmap.list[:count]]
-    number, values = (np.concatenate(each) for each in zip(*mesh.comm.allgather(own), strict=True))
-    return values[np.argsort(number)]
+    columns = []
+    functions = spaces.functions(values, "values")
+    for body, function in zip(system.bodies.each, functions, strict=True):
+        nodal = function.x.array.reshape(-1, spaces.components)
+        columns.append((nodal[function.function_space.dofmap.list[: body.n_cells]],))
+    return system.comm.bcast(system.bodies.in_file_order(columns))[0]
 
 
 def _placed(body: MeshBody, by_cell: np.ndarray, degree: int, name: str) -> fem.Function:

@@ -16,7 +16,7 @@ import ufl
 from dolfinx import fem
 
 from ...compat import evaluate
-from ..bodies import Bodies
+from ..body_mesh import BodyMesh
 from ..compiled import assembled_matrix
 from ..field import geometry_space, reference_element
 from ..kinematics import Kinematics, section_measure
@@ -69,13 +69,10 @@ class Advection:
         body [W/K]. Entering material is at ambient temperature.
     peclet : float
         Largest cell Péclet number ``|v| h/(2 κ degree)``.
-    upwind : UFL expression
-        Addition to the test function by stabilisation (SUPG).
     """
 
     carried: PETSc.Mat
     peclet: float
-    upwind: ufl.core.expr.Expr
 
     @property
     def stabilised(self) -> bool:
@@ -83,15 +80,28 @@ class Advection:
         return self.peclet > _MAX_RESOLVED_PECLET
 
 
+@dataclass(frozen=True)
+class BodyAdvection(Advection):
+    """Advection terms of the moving body alone.
+
+    Attributes
+    ----------
+    upwind : UFL expression
+        Addition to the test function by stabilisation (SUPG).
+    """
+
+    upwind: ufl.core.expr.Expr
+
+
 def advection(
-    bodies: Bodies,
+    body: BodyMesh,
     kinematics: Kinematics,
     space: fem.FunctionSpace,
     passage: Passage,
     conductivities: dict[str, float],
     capacities: dict[str, float],
-) -> Advection:
-    """Assemble the advection by a passing body. Every rank calls.
+) -> BodyAdvection:
+    """Assemble the advection in a passing body. Every rank calls.
 
     At high cell Péclet numbers, upwind test functions (SUPG, Brooks and Hughes, Comput. Methods
     Appl. Mech. Eng. 32 (1982) 199) prevent oscillations of the temperature. From degree 2 on they
@@ -99,7 +109,8 @@ def advection(
 
     Parameters
     ----------
-    bodies : Bodies
+    body : BodyMesh
+        The moving body.
     kinematics : Kinematics
     space : dolfinx.fem.FunctionSpace
         Temperature space.
@@ -107,16 +118,16 @@ def advection(
     conductivities, capacities : dict of str to float
         By part [W/(m K)] and [J/(m³ K)], at least for the moving parts.
     """
-    mesh, degree = bodies.mesh, space.ufl_element().degree
+    mesh, degree = body.mesh, space.ufl_element().degree
     T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
     moving = {part: (conductivities[part], capacities[part]) for part in passage.parts}
-    k = bodies.per_body({part: k for part, (k, _) in moving.items()})
-    ρc = bodies.per_body({part: ρc for part, (_, ρc) in moving.items()})
+    k = body.per_part({part: k for part, (k, _) in moving.items()})
+    ρc = body.per_part({part: ρc for part, (_, ρc) in moving.items()})
     v = _velocity(mesh, passage)
     crossing = _transit_time(mesh, v)
-    number = ufl.dot(v, v) * crossing / (2 * degree)  # times the diffusivity, zero in body 1
-    number *= bodies.per_body({part: ρc / k for part, (k, ρc) in moving.items()})
-    peclet = _largest(bodies, passage, number)
+    number = ufl.dot(v, v) * crossing / (2 * degree)  # times the diffusivity
+    number *= body.per_part({part: ρc / k for part, (k, ρc) in moving.items()})
+    peclet = _largest(body, passage, number)
 
     upwind = 0 * δT
     flow = ρc * ufl.dot(v, ufl.grad(T))
@@ -130,7 +141,7 @@ def advection(
     ds = ufl.ds(domain=mesh, metadata={"quadrature_degree": 2 * degree + 2})
     carried = kinematics.integral(mesh, flow, section_measure(mesh, degree))
     carried += kinematics.integral(mesh, ρc * into * T * δT, ds)
-    return Advection(assembled_matrix(carried), peclet, upwind)
+    return BodyAdvection(assembled_matrix(carried), peclet, upwind)
 
 
 def _velocity(mesh, passage: Passage):
@@ -147,9 +158,9 @@ def _transit_time(mesh, v):
     return 1 / ufl.sqrt(ufl.max_value(ufl.dot(speed, speed), 1e-30))
 
 
-def _largest(bodies: Bodies, passage: Passage, number) -> float:
+def _largest(body: BodyMesh, passage: Passage, number) -> float:
     """Largest value of an expression at the midpoints of the moving cells."""
-    mesh, cells = bodies.mesh, bodies.cells(*passage.parts)
+    mesh, cells = body.mesh, body.cells(*passage.parts)
     middle = reference_element(mesh, 1).points.mean(axis=0, keepdims=True)
     expression = fem.Expression(number, middle)
     values = evaluate(expression, mesh, cells) if len(cells) else np.zeros(1)

@@ -12,7 +12,6 @@ from petsc4py import PETSc
 
 import numpy as np
 import scipy.sparse as sp
-from dolfinx import fem
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
@@ -20,6 +19,7 @@ from ..direct_solver import multiply
 from ..field import without_fixed
 from ..multigrid_solver import MultigridSolver
 from ..solver_choice import AnySolver, SolverChoice, linear_solver
+from ..spaces import Spaces
 from .advection import Advection
 from .even_paths import EvenPaths
 
@@ -34,8 +34,8 @@ class Conduction:
 
     Attributes
     ----------
-    space : dolfinx.fem.FunctionSpace
-        Space of the temperature rise over ambient [K].
+    spaces : Spaces
+        Spaces of the temperature rise over ambient [K].
     conductivity : petsc4py.PETSc.Mat
         Conduction, cooling and advection, without given temperatures and without `bath` [W/K].
     cooling : petsc4py.PETSc.Mat
@@ -59,7 +59,7 @@ class Conduction:
         Kind of the solver.
     """
 
-    space: fem.FunctionSpace
+    spaces: Spaces
     conductivity: PETSc.Mat
     cooling: PETSc.Mat
     capacity: PETSc.Mat | None
@@ -127,7 +127,7 @@ class Conduction:
             self,
             conductivity=total,
             factor=conduction_solver(
-                self.space, total, self.bath, self.fixed, symmetric, self.even, self.choice
+                self.spaces, total, self.bath, self.fixed, symmetric, self.even, self.choice
             ),
             symmetric=symmetric,
         )
@@ -135,7 +135,7 @@ class Conduction:
     def with_bath(self, bath: PETSc.Mat) -> Conduction:
         """Copy whose solver includes another matrix of heat transfer instead of the bath."""
         factor = conduction_solver(
-            self.space,
+            self.spaces,
             self.conductivity,
             bath,
             self.fixed,
@@ -146,6 +146,16 @@ class Conduction:
         if isinstance(factor, MultigridSolver) and isinstance(self.factor, MultigridSolver):
             factor.iterations = self.factor.iterations  # counted together
         return replace(self, bath=bath, factor=factor)
+
+    def with_factor(self) -> Conduction:
+        """Factorised copy for many columns, where single solutions are found by multigrid.
+
+        The same if the memory does not suffice. Every rank calls.
+        """
+        if not self.choice.factorises_columns:
+            return self
+        known = self.spaces, self.conductivity, self.bath, self.fixed, self.symmetric, self.even
+        return replace(self, factor=conduction_solver(*known, SolverChoice()))
 
     def stored_heat(self, rise: np.ndarray) -> np.ndarray:
         """Nodal stored heat [J], owned rows; its sum over all ranks is that of the bodies."""
@@ -158,7 +168,7 @@ class Conduction:
         In bodies of uniform temperature all heat flows are rounding errors.
         """
         size = float(np.abs(self.conductivity.getDiagonal().getArray()) @ np.abs(rise))
-        return _BALANCE_FLOOR * float(sum_over_ranks(self.space.mesh.comm, np.array(size)))
+        return _BALANCE_FLOOR * float(sum_over_ranks(self.spaces.comm, np.array(size)))
 
     def losses(
         self, rise: np.ndarray, heat: np.ndarray, ambient: float = 0.0
@@ -182,7 +192,7 @@ class Conduction:
         excess = rise - ambient
         into_prescribed = self._into_prescribed(rise, heat).sum()
         parts = np.array([cooling_per_rise @ excess, into_prescribed, advective @ excess])
-        return tuple(sum_over_ranks(self.space.mesh.comm, parts))
+        return tuple(sum_over_ranks(self.spaces.comm, parts))
 
     def exchanged_heat(self, rise: np.ndarray, heat: np.ndarray, ambient: float = 0.0) -> float:
         """Sum of the magnitudes of heat through cooled and prescribed-temperature surfaces [W].
@@ -191,7 +201,7 @@ class Conduction:
         """
         size = np.abs(multiply(self.cooling, rise - ambient)).sum()
         size += np.abs(self._into_prescribed(rise, heat)).sum()
-        return float(sum_over_ranks(self.space.mesh.comm, size))
+        return float(sum_over_ranks(self.spaces.comm, size))
 
     def _into_prescribed(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
         """Heat into the values with a prescribed temperature [W]."""
@@ -207,7 +217,7 @@ class Conduction:
     @cached_property
     def _has_prescribed(self) -> bool:
         """True if any rank has a prescribed temperature. Every rank calls."""
-        return any(self.space.mesh.comm.allgather(bool(self.fixed.any())))
+        return any(self.spaces.comm.allgather(bool(self.fixed.any())))
 
     @cached_property
     def _per_rise(self) -> tuple[np.ndarray, np.ndarray]:
@@ -224,7 +234,7 @@ class Conduction:
 
 
 def conduction_solver(
-    space,
+    spaces: Spaces,
     conductivity: PETSc.Mat,
     bath: PETSc.Mat,
     fixed: np.ndarray,
@@ -243,7 +253,7 @@ def conduction_solver(
         return even.factor(matrix, fixed, known)
     first = matrix.getOwnershipRange()[0]
     matrix.zeroRowsColumns((np.flatnonzero(fixed) + first).astype(PETSc.IntType), diag=1.0)
-    return linear_solver(choice, matrix, space, fixed, known)
+    return linear_solver(choice, matrix, spaces, fixed, known)
 
 
 def _column_sums(matrix: PETSc.Mat) -> np.ndarray:

@@ -17,6 +17,7 @@ from ...parallel import sum_over_ranks
 from ..bodies import Bodies
 from ..direct_solver import DirectSolver
 from ..field import owned
+from ..spaces import Spaces
 from .advection import Passage
 
 _PATH_TOLERANCE = 1e-9
@@ -35,20 +36,16 @@ class EvenPaths:
     Parameters
     ----------
     bodies : Bodies
-    space : dolfinx.fem.FunctionSpace
-        Temperature space; the mesh has rows of cells along the paths.
+    spaces : Spaces
+        Temperature spaces; the mesh of the body has rows of cells along the paths.
     passage : Passage
     """
 
-    def __init__(self, bodies: Bodies, space: fem.FunctionSpace, passage: Passage):
-        self._comm, self._dim, count = bodies.mesh.comm, bodies.mesh.topology.dim, owned(space)
-        dofs = np.unique(space.dofmap.list[bodies.cells(*passage.parts)])
-        self._passing = dofs[dofs < count]
-        self._others = np.setdiff1d(np.arange(count), self._passing)
-        ψ = fem.Function(space)
-        ψ.interpolate(passage.stream(bodies.mesh))
-        height = space.tabulate_dof_coordinates()[self._passing, 2]
-        places = np.column_stack([ψ.x.array[self._passing], height])
+    def __init__(self, bodies: Bodies, spaces: Spaces, passage: Passage):
+        self._comm, self._dim = bodies.comm, bodies.dim
+        passing = spaces.nodes_of(bodies, *passage.parts)
+        self._passing, self._others = np.flatnonzero(passing), np.flatnonzero(~passing)
+        places = np.vstack([_places(space, passage) for space in spaces.each])[self._passing]
         self._path, self._paths = _path_numbers(self._comm, places)
         if sum_over_ranks(self._comm, len(places)) < _LEAST_NODES * self._paths:
             raise CaseError(
@@ -125,6 +122,14 @@ class EvenFactor(DirectSolver):
         columns = loads if loads.ndim == 2 else loads[:, None]
         unknowns = super().solve(self._paths.joined(columns))
         return self._paths.spread(unknowns).reshape(loads.shape, order="F")
+
+
+def _places(space: fem.FunctionSpace, passage: Passage) -> np.ndarray:
+    """Stream function and height at the owned nodes of a body, shape (n_owned, 2)."""
+    ψ = fem.Function(space)
+    ψ.interpolate(passage.stream(space.mesh))
+    places = np.column_stack([ψ.x.array, space.tabulate_dof_coordinates()[:, 2]])
+    return places[: owned(space)]
 
 
 def _path_numbers(comm, places: np.ndarray) -> tuple[np.ndarray, int]:

@@ -12,11 +12,12 @@ import ufl
 from dolfinx import default_scalar_type, fem
 
 from ..bodies import Bodies
-from ..compiled import assembled_matrix, nodal_loads
-from ..field import owned
+from ..body_mesh import BodyMesh
+from ..compiled import assembled_matrix
 from ..kinematics import Kinematics, section_measure
 from ..solver_choice import SolverChoice
-from .advection import Passage, advection
+from ..spaces import Spaces, block_diagonal
+from .advection import Advection, BodyAdvection, Passage, advection
 from .conduction import Conduction, conduction_solver
 from .even_paths import EvenPaths
 
@@ -37,7 +38,7 @@ class ThermalMaterial:
 def conduction(
     bodies: Bodies,
     kinematics: Kinematics,
-    space: fem.FunctionSpace,
+    spaces: Spaces,
     materials: dict[str, ThermalMaterial],
     cooling: dict[str, float],
     given: dict[str, float],
@@ -51,8 +52,8 @@ def conduction(
     ----------
     bodies : Bodies
     kinematics : Kinematics
-    space : dolfinx.fem.FunctionSpace
-        Scalar space of the temperature rise.
+    spaces : Spaces
+        Scalar spaces of the temperature rise.
     materials : dict of str to ThermalMaterial
         Materials by part.
     cooling : dict of str to float
@@ -69,34 +70,27 @@ def conduction(
         Direct by default.
     """
     choice = choice or SolverChoice()
-    mesh, degree = bodies.mesh, space.ufl_element().degree
-    T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
-    conductivities = {part: material.conductivity for part, material in materials.items()}
-    capacities = {p: m.capacity for p, m in materials.items() if m.capacity is not None}
-    moving, even = None, None
-    if passage is not None and passage.spread:
-        even = EvenPaths(bodies, space, passage)
-    elif passage is not None:
-        moving = advection(bodies, kinematics, space, passage, conductivities, capacities)
-    measure = section_measure(mesh, degree)
-    conductivity = assembled_matrix(conducting(bodies, kinematics, conductivities, degree)(T, δT))
-    transfers = [form(T, δT) for form in transferring(bodies, kinematics, cooling)]
-    cooled = assembled_matrix(*transfers, pattern=conductivity)
-    structure = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
-    conductivity.axpy(1.0, cooled, structure)
-    test = δT
-    if moving is not None:
-        test = δT + moving.upwind
-        conductivity.axpy(1.0, moving.carried, structure)
-    capacity = None
-    if len(capacities) == len(materials):
-        density = bodies.per_body(capacities) * T * test
-        capacity = assembled_matrix(kinematics.integral(mesh, density, measure))
-
-    fixed, values = given_rises(bodies, space, given, even)
-    factor = conduction_solver(space, conductivity, bath, fixed, moving is None, even, choice)
+    spread = passage is not None and passage.spread
+    even = EvenPaths(bodies, spaces, passage) if passage is not None and spread else None
+    blocks = [
+        _assembled(body, kinematics, space, materials, cooling, None if spread else passage)
+        for body, space in zip(bodies.each, spaces.each, strict=True)
+    ]
+    conductivity = block_diagonal([block.conductivity for block in blocks])
+    cooled = block_diagonal([block.cooling for block in blocks])
+    capacities = [block.capacity for block in blocks if block.capacity is not None]
+    capacity = block_diagonal(capacities) if len(capacities) == len(blocks) else None
+    moving = None
+    if any(block.advection is not None for block in blocks):
+        moving = Advection(
+            block_diagonal([_carried(block) for block in blocks]),
+            max(block.advection.peclet for block in blocks if block.advection is not None),
+        )
+        conductivity.axpy(1.0, moving.carried, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+    fixed, values = given_rises(bodies, spaces, given, even)
+    factor = conduction_solver(spaces, conductivity, bath, fixed, moving is None, even, choice)
     return Conduction(
-        space,
+        spaces,
         conductivity,
         cooled,
         capacity,
@@ -111,11 +105,60 @@ def conduction(
     )
 
 
+@dataclass(frozen=True)
+class _BodyMatrices:
+    """Matrices of one body, of equal pattern, see `Conduction`; conductivity alone."""
+
+    conductivity: PETSc.Mat
+    cooling: PETSc.Mat
+    capacity: PETSc.Mat | None
+    advection: BodyAdvection | None
+
+
+def _assembled(
+    body: BodyMesh,
+    kinematics: Kinematics,
+    space: fem.FunctionSpace,
+    materials: dict[str, ThermalMaterial],
+    cooling: dict[str, float],
+    passage: Passage | None,
+) -> _BodyMatrices:
+    """Conduction, cooling and storage of one body, and advection in it; as in `conduction`."""
+    degree, T, δT = space.ufl_element().degree, ufl.TrialFunction(space), ufl.TestFunction(space)
+    own = {part: materials[part] for part in body.parts if part in materials}
+    conductivities = {part: material.conductivity for part, material in own.items()}
+    capacities = {p: m.capacity for p, m in own.items() if m.capacity is not None}
+    moving = None
+    if passage is not None and set(passage.parts) & set(body.parts):
+        moving = advection(body, kinematics, space, passage, conductivities, capacities)
+    conductivity = assembled_matrix(conducting(body, kinematics, conductivities, degree)(T, δT))
+    transfers = [form(T, δT) for form in transferring(body, kinematics, cooling)]
+    cooled = assembled_matrix(*transfers, pattern=conductivity)
+    conductivity.axpy(1.0, cooled, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+    capacity = None
+    if len(capacities) == len(own):
+        test = δT if moving is None else δT + moving.upwind
+        measure = section_measure(body.mesh, degree)
+        density = body.per_part(capacities) * T * test
+        capacity = assembled_matrix(kinematics.integral(body.mesh, density, measure))
+    return _BodyMatrices(conductivity, cooled, capacity, moving)
+
+
+def _carried(block: _BodyMatrices) -> PETSc.Mat:
+    """Advection matrix of a body, zero in a body at rest."""
+    if block.advection is not None:
+        return block.advection.carried
+    nothing = block.conductivity.duplicate()
+    nothing.zeroEntries()
+    nothing.assemble()
+    return nothing
+
+
 def conducting(
-    bodies: Bodies, kinematics: Kinematics, conductivities: dict[str, float], degree: int
+    body: BodyMesh, kinematics: Kinematics, conductivities: dict[str, float], degree: int
 ):
     """Bilinear form of conduction, as a function of trial and test functions [W K]."""
-    mesh, k = bodies.mesh, bodies.per_body(conductivities)
+    mesh, k = body.mesh, body.per_part(conductivities)
     measure = section_measure(mesh, degree)
     return lambda T, δT: kinematics.integral(
         mesh, k * ufl.inner(ufl.grad(T), ufl.grad(δT)), measure
@@ -123,21 +166,21 @@ def conducting(
 
 
 def transferring(
-    bodies: Bodies, kinematics: Kinematics, coefficients: dict[str, float]
+    body: BodyMesh, kinematics: Kinematics, coefficients: dict[str, float]
 ) -> list[Callable]:
     """Bilinear forms ``∫ h T δT dS`` as functions of T and δT, one per distinct value of h.
 
     Parameters
     ----------
-    bodies : Bodies
+    body : BodyMesh
     kinematics : Kinematics
     coefficients : dict of str to float
         Heat transfer coefficient h by surface [W/(m² K)].
     """
-    mesh = bodies.mesh
+    mesh = body.mesh
 
     def form(h: float) -> Callable:
-        ds = bodies.surface_measure(*(s for s, other in coefficients.items() if other == h))
+        ds = body.surface_measure(*(s for s, other in coefficients.items() if other == h))
         constant = fem.Constant(mesh, default_scalar_type(h))
         return lambda T, δT: kinematics.integral(mesh, constant * T * δT, ds)
 
@@ -145,27 +188,30 @@ def transferring(
 
 
 def surface_heat(
-    bodies: Bodies, kinematics: Kinematics, space: fem.FunctionSpace, surface: str, flux: float
+    bodies: Bodies, kinematics: Kinematics, spaces: Spaces, surface: str, flux: float
 ) -> np.ndarray:
     """Nodal heat of a uniform flux [W/m²] into the body through a surface [W], owned rows.
 
-    Every rank calls; `space` is that of the temperature.
+    Every rank calls; `spaces` are those of the temperature.
     """
-    measure = bodies.surface_measure(surface)
-    q = fem.Constant(bodies.mesh, default_scalar_type(flux))
-    return nodal_loads(space, lambda δT: kinematics.integral(bodies.mesh, q * δT, measure))
+
+    def inflow(body: BodyMesh) -> Callable:
+        measure = body.surface_measure(surface)
+        q = fem.Constant(body.mesh, default_scalar_type(flux))
+        return lambda δT: kinematics.integral(body.mesh, q * δT, measure)
+
+    return spaces.loads(map(inflow, bodies.each))
 
 
 def given_rises(
-    bodies: Bodies, space: fem.FunctionSpace, given: dict[str, float], even: EvenPaths | None
+    bodies: Bodies, spaces: Spaces, given: dict[str, float], even: EvenPaths | None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Mask of fixed owned values, and their rises, linear in the rises given by surface [K]."""
-    count = owned(space)
-    fixed, values = np.zeros(count, dtype=bool), np.zeros(count)
-    for surface, rise in given.items():
-        dofs = fem.locate_dofs_topological(
-            space, bodies.mesh.topology.dim - 1, bodies.facets(surface)
-        )
-        mine = dofs[dofs < count]
-        fixed[mine], values[mine] = True, rise
+    fixed, values = np.zeros(spaces.owned, dtype=bool), np.zeros(spaces.owned)
+    parts = zip(bodies.each, spaces.each, spaces.split(fixed), spaces.split(values), strict=True)
+    for body, space, held, at in parts:
+        for surface, rise in given.items():
+            dofs = fem.locate_dofs_topological(space, bodies.dim - 1, body.facets(surface))
+            mine = dofs[dofs < len(held)]
+            held[mine], at[mine] = True, rise
     return (fixed, values) if even is None else even.whole(fixed, values)

@@ -17,14 +17,13 @@ from petsc4py import PETSc
 
 import numpy as np
 import ufl
-from dolfinx import fem
 
 from ..bodies import Bodies
 from ..compiled import assembled_matrix
 from ..direct_solver import multiply
-from ..field import as_function
 from ..kinematics import Kinematics
 from ..mechanics.elasticity import Elasticity
+from ..spaces import Spaces, block_diagonal
 from .conduction import Conduction
 from .heat_equation import ThermalMaterial, conducting
 
@@ -132,41 +131,46 @@ def varying_conduction(
     ambient: float,
 ) -> VaryingConduction:
     """Add temperature-dependent conductivities; parameters as in `conduction`, factors by part."""
-    space = linear.space
-    T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
-    parts = []
+    spaces, parts = linear.spaces, []
     for name, factor in factors.items():
         alone = {part: (part == name) * m.conductivity for part, m in materials.items()}
-        form = conducting(bodies, kinematics, alone, space.ufl_element().degree)
-        parts.append(VaryingConductivity(name, assembled_matrix(form(T, δT)), factor, ambient))
+        blocks = []
+        for body, space in zip(bodies.each, spaces.each, strict=True):
+            form = conducting(body, kinematics, alone, spaces.degree)
+            terms = form(ufl.TrialFunction(space), ufl.TestFunction(space))
+            blocks.append(assembled_matrix(terms))
+        parts.append(VaryingConductivity(name, block_diagonal(blocks), factor, ambient))
     constant = {field.name: getattr(linear, field.name) for field in fields(Conduction)}
     return VaryingConduction(**constant, parts=tuple(parts))
 
 
 def varying_expansion(
     elastic: Elasticity,
-    space: fem.FunctionSpace,
+    temperatures: Spaces,
     factors: Mapping[str, PropertyMultiplier],
     ambient: float,
 ) -> tuple[VaryingExpansion, ...]:
     """Temperature-dependent expansions from factors by part."""
     return tuple(
-        VaryingExpansion(name, elastic.thermal_load(space, only=name), factor, ambient)
+        VaryingExpansion(name, elastic.thermal_load(temperatures, only=name), factor, ambient)
         for name, factor in factors.items()
     )
 
 
-def straining_rise(
-    space: fem.FunctionSpace,
-    rise: np.ndarray,
-    bodies: Bodies,
-    parts: tuple[VaryingExpansion, ...],
-) -> ufl.core.expr.Expr:
-    """Rise that causes the same strain at constant expansion, from the true rise (n_owned,) [K]."""
-    result = as_function(space, rise, "rise")
+def straining_rises(
+    spaces: Spaces, rise: np.ndarray, bodies: Bodies, parts: tuple[VaryingExpansion, ...]
+) -> list[ufl.core.expr.Expr]:
+    """Rise that causes the same strain at constant expansion, from the true rise (n_owned,) [K].
+
+    One expression for each body.
+    """
+    result = spaces.functions(rise, "rise")
     for part in parts:
-        more = as_function(space, part.excess(rise), "more")
-        result = result + bodies.per_body({part.part: 1.0}) * more
+        more = spaces.functions(part.excess(rise), "more")
+        result = [
+            known + body.per_part({part.part: 1.0}) * added
+            for known, body, added in zip(result, bodies.each, more, strict=True)
+        ]
     return result
 
 

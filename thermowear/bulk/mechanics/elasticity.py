@@ -1,92 +1,59 @@
-"""Linear elasticity of both bodies, with thermal strain."""
+"""Linear elasticity of the bodies, with thermal strain."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 
 from petsc4py import PETSc
 
 import numpy as np
 import scipy.sparse as sp
-import ufl
-from dolfinx import default_scalar_type, fem
+from dolfinx import fem
 from dolfinx import mesh as dmesh
 
 from ..bodies import Bodies
-from ..compiled import assembled_matrix, surface_area
-from ..direct_solver import eliminate, multiply
-from ..field import lagrange_space, owned, without_fixed
-from ..kinematics import Kinematics, section_measure
-from ..solver_choice import AnySolver, SolverChoice, linear_solver
-
-
-@dataclass(frozen=True)
-class ElasticMaterial:
-    """Isotropic material: Young's modulus [Pa], Poisson ratio, thermal expansion [1/K]."""
-
-    young_modulus: float
-    poisson_ratio: float
-    expansion: float = 0.0
+from ..body_mesh import BodyMesh
+from ..compiled import surface_area
+from ..direct_solver import eliminate
+from ..field import owned
+from ..kinematics import Kinematics
+from ..solver_choice import SolverChoice, linear_solver
+from ..spaces import Spaces, block_diagonal, lagrange_spaces
+from .elastic_body import ElasticBody, ElasticForms, ElasticMaterial
 
 
 @dataclass(frozen=True)
 class Elasticity:
-    """Elasticity problem of the bodies, with the solver of its equations.
+    """Elasticity problem of the bodies, which are solved one after the other.
 
     Attributes
     ----------
     bodies : Bodies
     kinematics : Kinematics
-    space : dolfinx.fem.FunctionSpace
-        Displacement space [m].
-    fixed : ndarray of bool, shape (n_owned,)
-        Mask of values held at zero.
-    support_rows : petsc4py.PETSc.Mat
-        Rows of the stiffness of these values, for the support reactions.
-    factor : DirectSolver or MultigridSolver
-        Solver of the supported stiffness.
-    lame : tuple of dolfinx.fem.Function
-        λ, μ and thermal modulus times α of the model, constant on each body [Pa, Pa/K].
+    spaces : Spaces
+        Displacement spaces [m].
+    each : tuple of ElasticBody
     """
 
     bodies: Bodies
     kinematics: Kinematics
-    space: fem.FunctionSpace
-    fixed: np.ndarray
-    support_rows: PETSc.Mat
-    factor: AnySolver
-    lame: tuple[fem.Function, fem.Function, fem.Function]
+    spaces: Spaces
+    each: tuple[ElasticBody, ...]
+
+    @cached_property
+    def fixed(self) -> np.ndarray:
+        """Mask of values held at zero, shape (n_owned,)."""
+        return np.concatenate([body.fixed for body in self.each])
 
     @cached_property
     def stiffness(self) -> PETSc.Mat:
         """Stiffness without supports, assembled on first use. Every rank calls."""
-        return _stiffness(self.bodies, self.kinematics, self.lame, self.space)
+        return block_diagonal([body.stiffness(body.space) for body in self.each])
 
-    def stress(self, u, rise=None):
-        """Stress of a displacement and a temperature rise, 3 x 3 [Pa]."""
-        λ, μ, m = self.lame
-        ε = self.kinematics.strain(self.bodies.mesh, u)
-        return self.kinematics.stress(ε, (λ, μ), 0.0 if rise is None else m * rise)
-
-    def virtual_work(self, u, δu, degree: int):
-        """Form of the virtual work of the stress of u on the strain of δu [J].
-
-        `degree` is the polynomial degree for which the quadrature is exact.
-        """
-        measure = section_measure(self.bodies.mesh, degree)
-        return _virtual_work(self.bodies.mesh, self.kinematics, self.lame, u, δu, measure)
-
-    def thermal_work(self, rise, δu, degree: int):
-        """Form of the work of the thermal stress of a temperature rise on the strain of δu [J]."""
-        mesh = self.bodies.mesh
-        ε = self.kinematics.strain(mesh, δu)
-        measure = section_measure(mesh, degree)
-        return self.kinematics.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
-
-    def surface_work(self, surface: str, force: np.ndarray) -> Callable:
-        """Form of the work of a force distributed over a surface, a function of displacement [J].
+    def surface_work(self, surface: str, force: np.ndarray) -> list[Callable]:
+        """Forms by body of the work of a force distributed over a surface [J].
 
         Parameters
         ----------
@@ -94,59 +61,46 @@ class Elasticity:
         force : ndarray, shape (gdim,)
             Total force on the ring or over the thickness [N].
         """
-        area = surface_area(self.bodies, self.kinematics, surface)
-        force = np.asarray(force, dtype=default_scalar_type)
-        return self._traction_work(surface, fem.Constant(self.bodies.mesh, force / area))
+        traction = force / surface_area(self.bodies, self.kinematics, surface)
+        return [body.traction_work(surface, traction) for body in self.each]
 
-    def pressure_work(self, surface: str, pressure: float) -> Callable:
-        """Form of the work of a pressure [Pa] along the inward normal; see `surface_work`."""
-        mesh = self.bodies.mesh
-        constant = fem.Constant(mesh, default_scalar_type(pressure))
-        return self._traction_work(surface, -constant * ufl.FacetNormal(mesh))
-
-    def _traction_work(self, surface: str, traction) -> Callable:
-        mesh, measure = self.bodies.mesh, self.bodies.surface_measure(surface)
-        return lambda δu: self.kinematics.integral(mesh, ufl.inner(traction, δu), measure)
+    def pressure_work(self, surface: str, pressure: float) -> list[Callable]:
+        """Forms by body of the work of a pressure [Pa] along the inward normal [J]."""
+        return [body.pressure_work(surface, pressure) for body in self.each]
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Displacements [m] due to nodal loads [N]; owned rows, one or several columns."""
-        return self.factor.solve(without_fixed(loads, self.fixed))
+        result = np.empty(loads.shape, order="F")
+        parts = zip(self.each, self.spaces.split(loads), self.spaces.split(result), strict=True)
+        for body, load, found in parts:
+            found[...] = body.solve(load)
+        return result
 
     def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Support reactions [N], owned rows; zero in the free values."""
-        result = np.zeros(len(self.fixed))
-        result[self.fixed] = multiply(self.support_rows, displacement) - loads[self.fixed]
-        return result
+        split = self.spaces.split
+        parts = zip(self.each, split(displacement), split(loads), strict=True)
+        return np.concatenate([body.reactions(u, load) for body, u, load in parts])
 
     def compressibility(self) -> float:
-        """Smallest ``1 - 2 ν = μ / (λ + μ)`` of the bodies; every rank calls."""
-        λ, μ, _ = (constant.x.array for constant in self.lame)
-        return min(self.bodies.mesh.comm.allgather(float((μ / (λ + μ)).min(initial=1.0))))
+        """Smallest ``1 - 2 ν`` of the bodies; every rank calls."""
+        return min(self.bodies.comm.allgather(min(b.least_compressibility for b in self.each)))
 
     def owned_by(self, *parts: str) -> np.ndarray:
         """Mask of the owned nodes that belong to parts of bodies, shape (n_owned / gdim,)."""
-        nodes = np.unique(self.space.dofmap.list[self.bodies.cells(*parts)])
-        belongs = np.zeros(self.space.dofmap.index_map.size_local, dtype=bool)
-        belongs[nodes[nodes < len(belongs)]] = True
-        return belongs
+        return self.spaces.nodes_of(self.bodies, *parts)
 
     def nodes(self) -> np.ndarray:
         """Coordinates of the owned nodes, shape (n_owned / gdim, gdim) [m]."""
-        count, dim = self.space.dofmap.index_map.size_local, self.bodies.mesh.geometry.dim
-        return self.space.tabulate_dof_coordinates()[:count, :dim]
+        return self.spaces.nodes()
 
-    def thermal_load(
-        self, temperature_space: fem.FunctionSpace, only: str | None = None
-    ) -> PETSc.Mat:
+    def thermal_load(self, temperatures: Spaces, only: str | None = None) -> PETSc.Mat:
         """Matrix of nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N/K].
 
         Over all bodies, or over the part `only`.
         """
-        rise, δu = ufl.TrialFunction(temperature_space), ufl.TestFunction(self.space)
-        if only is not None:
-            rise = self.bodies.per_body({only: 1.0}) * rise
-        degree = temperature_space.ufl_element().degree
-        return assembled_matrix(self.thermal_work(rise, δu, degree))
+        parts = zip(self.each, temperatures.each, strict=True)
+        return block_diagonal([b.thermal_load(rises, b.space, only) for b, rises in parts])
 
 
 def elasticity(
@@ -159,7 +113,7 @@ def elasticity(
     rollers: tuple[str, ...] = (),
     choice: SolverChoice | None = None,
 ) -> Elasticity:
-    """Assemble the stiffness and set up its solver. Every rank calls.
+    """Assemble the stiffness and set up its solver, body by body. Every rank calls.
 
     Parameters
     ----------
@@ -168,7 +122,7 @@ def elasticity(
     degree : int
         Polynomial degree of the displacement.
     materials : dict of str to ElasticMaterial
-        Materials by body.
+        Materials by part.
     clamped : list of str
         Surfaces fixed in all directions; every body needs one.
     symmetric : tuple of str
@@ -178,24 +132,29 @@ def elasticity(
     choice : SolverChoice, optional
         Direct by default.
     """
-    mesh = bodies.mesh
-    space = lagrange_space(mesh, degree, mesh.geometry.dim)
-    lame = _lame(bodies, kinematics, materials)
+    spaces = lagrange_spaces(bodies, degree, bodies.dim)
+    guided = {0: symmetric, 1: rollers}
+    each = []
+    for body, space in zip(bodies.each, spaces.each, strict=True):
+        forms = ElasticForms(body, kinematics, _lame(body, kinematics, materials))
+        fixed = fixed_values(body, kinematics, space, clamped, guided)
+        each.append(_elastic_body(forms, space, fixed, choice or SolverChoice()))
+    return Elasticity(bodies, kinematics, spaces, tuple(each))
 
-    assembled = partial(_stiffness, bodies, kinematics, lame)
-    matrix = assembled(space)
-    fixed = fixed_values(bodies, kinematics, space, clamped, {0: symmetric, 1: rollers})
+
+def _elastic_body(
+    forms: ElasticForms, space: fem.FunctionSpace, fixed: np.ndarray, choice: SolverChoice
+) -> ElasticBody:
+    matrix = forms.stiffness(space)
     support_rows = _rows(matrix, fixed)
     eliminate(matrix, fixed)
-    factor = linear_solver(choice or SolverChoice(), matrix, space, fixed, coarse=assembled)
-    return Elasticity(bodies, kinematics, space, fixed, support_rows, factor, lame)
 
+    def coarse(linear: Spaces) -> PETSc.Mat:
+        return forms.stiffness(linear.each[0])
 
-def _stiffness(bodies: Bodies, kinematics: Kinematics, lame, space: fem.FunctionSpace) -> PETSc.Mat:
-    """Stiffness without supports in a space. Every rank calls."""
-    u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
-    measure = section_measure(bodies.mesh, space.ufl_element().degree)
-    return assembled_matrix(_virtual_work(bodies.mesh, kinematics, lame, u, δu, measure))
+    factor = linear_solver(choice, matrix, Spaces((space,)), fixed, coarse=coarse)
+    solved = support_rows, matrix, factor, choice
+    return ElasticBody(forms.body, forms.kinematics, forms.lame, space, fixed, *solved)
 
 
 def supported(stiffness: PETSc.Mat, fixed: np.ndarray) -> PETSc.Mat:
@@ -215,28 +174,21 @@ def _rows(matrix: PETSc.Mat, chosen: np.ndarray) -> PETSc.Mat:
     )
 
 
-def _virtual_work(mesh, kinematics: Kinematics, lame, u, δu, measure):
-    λ, μ, _ = lame
-    ε, δε = kinematics.strain(mesh, u), kinematics.strain(mesh, δu)
-    density = λ * ufl.tr(ε) * ufl.tr(δε) + 2 * μ * ufl.inner(ε, δε)
-    return kinematics.integral(mesh, density, measure)
-
-
-def _lame(bodies: Bodies, kinematics: Kinematics, materials: dict[str, ElasticMaterial]):
+def _lame(body: BodyMesh, kinematics: Kinematics, materials: dict[str, ElasticMaterial]):
     λ, μ, m = {}, {}, {}
     for name, material in materials.items():
         E, ν = material.young_modulus, material.poisson_ratio
         λ[name], μ[name] = kinematics.lame(E, ν)
         m[name] = kinematics.thermal_modulus(E, ν) * material.expansion
-    return bodies.per_body(λ), bodies.per_body(μ), bodies.per_body(m)
+    return body.per_part(λ), body.per_part(μ), body.per_part(m)
 
 
-def fixed_values(bodies: Bodies, kinematics: Kinematics, space, clamped, guided) -> np.ndarray:
+def fixed_values(body: BodyMesh, kinematics: Kinematics, space, clamped, guided) -> np.ndarray:
     """Mask of the owned values fixed by supports, symmetry planes and the axis of symmetry.
 
     Parameters
     ----------
-    bodies : Bodies
+    body : BodyMesh
     kinematics : Kinematics
     space : dolfinx.fem.FunctionSpace
         Vector-valued space.
@@ -245,13 +197,13 @@ def fixed_values(bodies: Bodies, kinematics: Kinematics, space, clamped, guided)
     guided : dict of int to sequence of str
         Surfaces by the component that they fix.
     """
-    mesh = bodies.mesh
+    mesh = body.mesh
     tdim = mesh.topology.dim
     bs, count = space.dofmap.index_map_bs, space.dofmap.index_map.size_local
     held = np.zeros(owned(space), dtype=bool)
     for component in range(mesh.geometry.dim):
-        facets = [bodies.facets(surface) for surface in clamped]
-        facets += [bodies.facets(surface) for surface in guided.get(component, ())]
+        facets = [body.facets(surface) for surface in clamped]
+        facets += [body.facets(surface) for surface in guided.get(component, ())]
         if component == 0:
             facets.append(dmesh.locate_entities_boundary(mesh, tdim - 1, kinematics.on_axis))
         nodes = fem.locate_dofs_topological(

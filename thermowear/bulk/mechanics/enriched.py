@@ -18,9 +18,9 @@ import ufl
 from dolfinx import fem
 
 from ...parallel import sum_over_ranks
-from ..compiled import assembled, assembled_matrix, compiled, nodal_loads
+from ..compiled import assembled, assembled_matrix, compiled
 from ..direct_solver import DirectSolver, multiply
-from ..field import owned
+from ..spaces import Spaces, block_diagonal
 from .elasticity import supported
 
 _TOLERANCE = 1e-2  # of iterative solutions on the surplus in 3D; a factorisation costs too much
@@ -33,11 +33,11 @@ class EnrichedProblem:
 
     Parameters
     ----------
-    space, surplus : dolfinx.fem.FunctionSpace
-        See `surplus.surplus_space`.
-    forms, regular : sequence of callable
-        Terms of the bilinear form, each a function of trial and test functions. Terms in `regular`
-        enter corrections only; they regularise bodies without supports.
+    spaces, surplus : Spaces
+        See `surplus.surplus_spaces`.
+    forms, regular : sequence of sequence of callable
+        For each body, terms of the bilinear form as functions of trial and test functions. Terms in
+        `regular` enter corrections only; they regularise bodies without supports.
     solve : callable
         Solver for corrections on the space alone, for loads (n_owned,).
     fixed : tuple of ndarray of bool
@@ -46,48 +46,62 @@ class EnrichedProblem:
 
     def __init__(
         self,
-        space: fem.FunctionSpace,
-        surplus: fem.FunctionSpace,
-        forms: Sequence[Callable],
+        spaces: Spaces,
+        surplus: Spaces,
+        forms: Sequence[Sequence[Callable]],
         solve: Callable[[np.ndarray], np.ndarray],
         fixed: tuple[np.ndarray, np.ndarray],
-        regular: Sequence[Callable] = (),
+        regular: Sequence[Sequence[Callable]] | None = None,
     ):
-        self.space, self.surplus = space, surplus
-        self._comm = space.mesh.comm
+        self.spaces, self.surplus = spaces, surplus
+        self._comm = spaces.comm
         self._solve = solve
         self._free = ~np.concatenate(fixed)
-        self._values = fem.Function(space), fem.Function(surplus)
-        field = self._values[0] + self._values[1]
-        tests = ufl.TestFunction(space), ufl.TestFunction(surplus)
+        self._values = [
+            (fem.Function(space), fem.Function(more))
+            for space, more in zip(spaces.each, surplus.each, strict=True)
+        ]
+        regular = [() for _ in forms] if regular is None else regular
         self._actions, self._regular = (
-            [[compiled(term(field, test)) for term in terms] for test in tests]
+            [self._compiled(terms, part) for part in (spaces, surplus)]
             for terms in (forms, regular)
         )
-        trial = ufl.TrialFunction(surplus)
-        terms = [term(trial, tests[1]) for term in (*forms, *regular)]
-        self._block = _SurplusBlock(terms, fixed[1], space.mesh.topology.dim)
+        blocks = []
+        for space, *terms in zip(surplus.each, forms, regular, strict=True):
+            trial, test = ufl.TrialFunction(space), ufl.TestFunction(space)
+            every = [term(trial, test) for some in terms for term in some]
+            blocks.append(assembled_matrix(*every))
+        self._block = _SurplusBlock(block_diagonal(blocks), fixed[1], spaces.dim)
+
+    def _compiled(self, forms: Sequence[Sequence[Callable]], part: Spaces) -> list[list[fem.Form]]:
+        """Compiled actions of terms on the field, tested by the space or its surplus."""
+        result = []
+        for terms, space, values in zip(forms, part.each, self._values, strict=True):
+            field, test = values[0] + values[1], ufl.TestFunction(space)
+            result.append([compiled(term(field, test)) for term in terms])
+        return result
 
     def field(self, values: np.ndarray) -> np.ndarray:
         """Field with given values of the space (n_owned,) and zero surplus."""
-        return np.concatenate([values, np.zeros(owned(self.surplus))])
+        return np.concatenate([values, np.zeros(self.surplus.owned)])
 
-    def function(self, field: np.ndarray):
-        """Field as a UFL expression, valid until the next call."""
-        count = owned(self.space)
-        parts = field[:count], field[count:]
-        for function, values in zip(self._values, parts, strict=True):
-            function.x.array[: len(values)] = values
-            function.x.scatter_forward()
-        return self._values[0] + self._values[1]
+    def functions(self, field: np.ndarray) -> list:
+        """Field as a UFL expression for each body, valid until the next call."""
+        count = self.spaces.owned
+        parts = self.spaces.split(field[:count]), self.surplus.split(field[count:])
+        for functions, *given in zip(self._values, *parts, strict=True):
+            for function, values in zip(functions, given, strict=True):
+                function.x.array[: len(values)] = values
+                function.x.scatter_forward()
+        return [values[0] + values[1] for values in self._values]
 
-    def loads(self, form: Callable) -> np.ndarray:
-        """Load vector of a linear form, given as a function of its test function."""
-        return np.concatenate([nodal_loads(space, form) for space in (self.space, self.surplus)])
+    def loads(self, forms: Sequence[Callable]) -> np.ndarray:
+        """Load vector of linear forms, one for each body, as functions of the test function."""
+        return np.concatenate([self.spaces.loads(forms), self.surplus.loads(forms)])
 
     def residual(self, field: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Residual of a field under loads, zero in fixed values."""
-        self.function(field)
+        self.functions(field)
         forces = np.concatenate([_sum(terms) for terms in self._actions])
         return np.where(self._free, loads - forces, 0.0)
 
@@ -108,7 +122,7 @@ class EnrichedProblem:
         u, a + d and, without assembling its forces, the energy
         ``u·f + d·C u + (a + d)·(C u + S (a + d))``.
         """
-        count, block = owned(self.space), self._block
+        count, block = self.spaces.owned, self._block
         loads = np.where(self._free, loads, 0.0)
         first = block.solve(loads[count:])
         field = np.concatenate([np.zeros(count), first])
@@ -123,9 +137,11 @@ class EnrichedProblem:
 
     def _forces(self, field: np.ndarray, part: int) -> np.ndarray:
         """Forces of a correction on the space (0) or on the surplus (1)."""
-        self.function(field)
-        forces = _sum([*self._actions[part], *self._regular[part]])
-        count = owned(self.space)
+        self.functions(field)
+        forces = _sum(self._actions[part])
+        if any(self._regular[part]):
+            forces = forces + _sum(self._regular[part])
+        count = self.spaces.owned
         free = self._free[count:] if part else self._free[:count]
         return np.where(free, forces, 0.0)
 
@@ -133,15 +149,16 @@ class EnrichedProblem:
         return float(sum_over_ranks(self._comm, first @ second))
 
 
-def _sum(terms: Sequence[fem.Form]) -> np.ndarray:
-    return np.sum([assembled(term) for term in terms], axis=0)
+def _sum(forms: Sequence[Sequence[fem.Form]]) -> np.ndarray:
+    """Sum of assembled terms, body by body."""
+    return np.concatenate([np.sum([assembled(t) for t in terms], axis=0) for terms in forms])
 
 
 class _SurplusBlock:
-    """Sum of bilinear forms on the surplus; solved directly in 2D, iteratively in 3D."""
+    """Matrix of the bilinear form on the surplus; solved directly in 2D, iteratively in 3D."""
 
-    def __init__(self, forms: Sequence, fixed: np.ndarray, dim: int):
-        self._matrix = supported(assembled_matrix(*forms), fixed)
+    def __init__(self, matrix: PETSc.Mat, fixed: np.ndarray, dim: int):
+        self._matrix = supported(matrix, fixed)
         self._factor = DirectSolver(self._matrix, dim=dim) if dim == 2 else None
         self._iteration = None if dim == 2 else _conjugate_gradients(self._matrix)
 

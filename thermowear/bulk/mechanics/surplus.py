@@ -17,18 +17,23 @@ import basix.ufl
 import numpy as np
 from dolfinx import fem
 
+from ..bodies import Bodies
 from ..field import reference_element
+from ..spaces import Spaces
 
 _LEGENDRE = basix.PolynomialType.legendre
 _RANK_TOLERANCE = 1e-10
 
 
-def surplus_space(mesh, degree: int, components: int = 0) -> fem.FunctionSpace:
-    """Surplus space over `field.lagrange_space` of a degree, scalar or vector-valued."""
-    element = _element(reference_element(mesh, 1).cell_type, degree)
-    if components:
-        element = basix.ufl.blocked_element(element, shape=(components,))
-    return fem.functionspace(mesh, element)
+def surplus_spaces(bodies: Bodies, degree: int, components: int = 0) -> Spaces:
+    """Surplus spaces over `spaces.lagrange_spaces` of a degree, scalar or vector-valued."""
+    each = []
+    for body in bodies.each:
+        element = _element(reference_element(body.mesh, 1).cell_type, degree)
+        if components:
+            element = basix.ufl.blocked_element(element, shape=(components,))
+        each.append(fem.functionspace(body.mesh, element))
+    return Spaces(tuple(each))
 
 
 @cache

@@ -270,11 +270,11 @@ class ContactEquations:
         return self._sum(self._all @ displacement).reshape(3, -1)
 
     def _sum(self, values):
-        return sum_over_ranks(self.elastic.space.mesh.comm, values)
+        return sum_over_ranks(self.elastic.bodies.comm, values)
 
     def _largest(self, *arrays: np.ndarray) -> float:
         largest = np.max([np.abs(array).max(initial=0.0) for array in arrays])
-        return float(np.max(self.elastic.space.mesh.comm.allgather(largest)))
+        return float(np.max(self.elastic.bodies.comm.allgather(largest)))
 
 
 def _held(elastic: Elasticity, matrix: sp.csr_matrix) -> sp.csr_matrix:

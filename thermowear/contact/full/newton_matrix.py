@@ -43,15 +43,15 @@ class NewtonMatrix:
         subtracted: np.ndarray,
         symmetry: str,
     ):
-        self._symmetry, self._dim = symmetry, elastic.bodies.mesh.topology.dim
+        self._symmetry, self._dim = symmetry, elastic.bodies.dim
         fixed = supported(elastic.stiffness, elastic.fixed)
         if subtracted.any():
-            columns = distributed(elastic.space, stress)
+            columns = distributed(elastic.spaces, stress)
             rows = columns.copy().transpose()
             _scale_rows(rows, subtracted)
             fixed.axpy(-1.0, columns.matMult(rows), _DIFFERENT_PATTERN)
-        self._columns = distributed(elastic.space, work)
-        self._rows = distributed(elastic.space, closing).transpose()
+        self._columns = distributed(elastic.spaces, work)
+        self._rows = distributed(elastic.spaces, closing).transpose()
         self._weighted_rows = self._rows.copy()
         self._product = self._columns.matMult(self._weighted_rows)
         self._matrix = fixed.copy()

@@ -16,6 +16,7 @@ from dolfinx import fem
 from scipy.spatial import cKDTree
 
 from ...bulk.field import reference_element
+from ...bulk.mechanics.elastic_body import ElasticBody
 from ...bulk.mechanics.elasticity import Elasticity
 from ...compat import coordinate_element, geometry_dofmap
 from ...lagrange import equispaced, tabulated
@@ -41,21 +42,21 @@ def normal_traction(elastic: Elasticity, pairing: Pairing) -> sp.csr_matrix:
     common face, whose area is smaller by ``n·n_1``. At points shared by two facets it is the mean
     of both cells, weighted by their parts of the area, and converges like the interior stress.
     """
-    space = elastic.space
     side, point, share = on_every_facet(pairing)
-    mine = np.flatnonzero(side.face.rank[side.facet] == space.mesh.comm.rank)
-    values = cell_traction(elastic, side, mine, pairing.normals[point[mine]])
+    index, dim = side.face.body, elastic.bodies.dim
+    space = elastic.spaces.each[index]
+    mine = np.flatnonzero(side.face.rank[side.facet] == elastic.bodies.comm.rank)
+    values = cell_traction(elastic.each[index], side, mine, pairing.normals[point[mine]])
     values *= share[mine, None, None]
     cells = side.face.cell[side.facet[mine]]
-    dim = space.mesh.geometry.dim
     rows = space.dofmap.list[cells].astype(np.int64)[..., None] * dim + np.arange(dim)
     columns = np.broadcast_to(point[mine, None, None], values.shape)
     entries = rows.ravel(), columns.ravel(), values.ravel()
-    return gather_rows(space, *entries, len(pairing.weights))
+    return gather_rows(elastic.spaces, index, *entries, len(pairing.weights))
 
 
 def cell_traction(
-    elastic: Elasticity, side: PairedFace, chosen: np.ndarray, normals: np.ndarray
+    elastic: ElasticBody, side: PairedFace, chosen: np.ndarray, normals: np.ndarray
 ) -> np.ndarray:
     """Traction along normals per nodal displacement of the cell, shape (n, nodes, gdim) [Pa/m].
 
@@ -63,7 +64,8 @@ def cell_traction(
 
     Parameters
     ----------
-    elastic : Elasticity
+    elastic : ElasticBody
+        The body of this side.
     side : PairedFace
     chosen : ndarray of int, shape (n,)
         Entries of the side, all in cells of this rank.
@@ -73,7 +75,7 @@ def cell_traction(
     facet = side.facet[chosen]
     cells = side.face.cell[facet]
     own = side.face.normals(facet, side.t[chosen])
-    kind = reference_element(elastic.bodies.mesh, 1).cell_type
+    kind = reference_element(elastic.body.mesh, 1).cell_type
     reference = reference_points(side, chosen, kind)
     _, slopes, divergence = displacement_slopes(elastic, cells, reference)
     λ, μ = (cell_values(function, cells)[:, None, None] for function in elastic.lame[:2])
@@ -84,15 +86,16 @@ def cell_traction(
 
 def thermal_traction(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
     """Thermal modulus m: a rise adds ``-m rise`` to the normal traction, shape (n,) [Pa/K]."""
-    return at_points(elastic.lame[2], pairing.sides[0])
+    return lame_at_points(elastic, pairing.sides[0])[2]
 
 
-def at_points(function: fem.Function, side: PairedFace) -> np.ndarray:
-    """Values of a function that is constant on each cell, shape (n,). Every rank calls."""
-    comm = function.function_space.mesh.comm
+def lame_at_points(elastic: Elasticity, side: PairedFace) -> np.ndarray:
+    """Constants `lame` of the body of a side at its points, shape (3, n). Every rank calls."""
+    comm = elastic.bodies.comm
     mine = side.face.rank[side.facet] == comm.rank
-    values = np.zeros(len(side.t))
-    values[mine] = cell_values(function, side.face.cell[side.facet[mine]])
+    values = np.zeros((3, len(side.t)))
+    for row, function in zip(values, elastic.each[side.face.body].lame, strict=True):
+        row[mine] = cell_values(function, side.face.cell[side.facet[mine]])
     return sum_over_ranks(comm, values)
 
 
@@ -101,12 +104,12 @@ def cell_values(function: fem.Function, cells: np.ndarray) -> np.ndarray:
     return function.x.array[function.function_space.dofmap.list[cells, 0]]
 
 
-def displacement_slopes(elastic: Elasticity, cells: np.ndarray, reference: np.ndarray):
+def displacement_slopes(elastic: ElasticBody, cells: np.ndarray, reference: np.ndarray):
     """Derivatives of the displacement shape functions at one reference point per cell.
 
     Parameters
     ----------
-    elastic : Elasticity
+    elastic : ElasticBody
     cells : ndarray of int, shape (n,)
         Cells of this rank.
     reference : ndarray, shape (n, gdim)
@@ -120,7 +123,7 @@ def displacement_slopes(elastic: Elasticity, cells: np.ndarray, reference: np.nd
     divergence : ndarray, shape (n, nodes, gdim)
         tr ε per nodal displacement in each direction [1/m].
     """
-    mesh, model = elastic.bodies.mesh, elastic.kinematics
+    mesh, model = elastic.body.mesh, elastic.kinematics
     element = reference_element(mesh, elastic.space.ufl_element().degree)
     geometry = equispaced(element.cell_type.name, coordinate_element(mesh).degree)
     values, *derivatives = tabulated(element, reference, 1)
@@ -180,14 +183,14 @@ def nitsche_stiffness(elastic: Elasticity, pairing: Pairing, gamma: float = GAMM
     exact factor between the square of a normal stress and the energy.
     """
     side, point, _ = on_every_facet(pairing)
-    comm, face = elastic.bodies.mesh.comm, side.face
+    comm, face = elastic.bodies.comm, side.face
     volume = np.zeros(len(face.nodes))
     for facet in np.flatnonzero(face.rank == comm.rank):
-        volume[facet] = _cell_rule(elastic, face.cell[facet])[0].sum()
+        volume[facet] = _cell_rule(elastic.each[face.body], face.cell[facet])[0].sum()
     depth = sum_over_ranks(comm, volume) / face.integrals(elastic.kinematics.area_factor)
-    modulus = at_points(elastic.lame[0], side) + 2 * at_points(elastic.lame[1], side)
-    degree = elastic.space.ufl_element().degree
-    return gamma * degree**2 * _largest_at(point, modulus / depth[side.facet])
+    λ, μ, _ = lame_at_points(elastic, side)
+    modulus = λ + 2 * μ
+    return gamma * elastic.spaces.degree**2 * _largest_at(point, modulus / depth[side.facet])
 
 
 def default_penalty(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
@@ -205,17 +208,17 @@ def stability_limit(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
     Nitsche energy is convex. Every rank calls.
     """
     side, point, share = on_every_facet(pairing)
-    limit = np.zeros(len(side.face.nodes))
+    limit, body = np.zeros(len(side.face.nodes)), elastic.each[side.face.body]
     for facet in np.unique(side.facet):
-        if side.face.rank[facet] == elastic.bodies.mesh.comm.rank:
+        if side.face.rank[facet] == elastic.bodies.comm.rank:
             chosen = np.flatnonzero(side.facet == facet)
-            traction = cell_traction(elastic, side, chosen, pairing.normals[point[chosen]])
+            traction = cell_traction(body, side, chosen, pairing.normals[point[chosen]])
             traction *= np.sqrt(pairing.weights[point] * share)[chosen, None, None]
-            stiffness = _cell_stiffness(elastic, side.face.cell[facet])
+            stiffness = _cell_stiffness(body, side.face.cell[facet])
             traction = traction.reshape(len(chosen), -1)
             against = traction @ np.linalg.solve(stiffness, traction.T)
             limit[facet] = np.linalg.eigvalsh(against)[-1]
-    limit = sum_over_ranks(elastic.bodies.mesh.comm, limit)
+    limit = sum_over_ranks(elastic.bodies.comm, limit)
     return _largest_at(point, limit[side.facet])
 
 
@@ -249,9 +252,9 @@ def _largest_at(point: np.ndarray, values: np.ndarray) -> np.ndarray:
     return largest
 
 
-def _cell_rule(elastic: Elasticity, cell: int):
+def _cell_rule(elastic: ElasticBody, cell: int):
     """Volume weights, gradients and divergence at the quadrature points of one cell."""
-    kind = reference_element(elastic.bodies.mesh, 1).cell_type
+    kind = reference_element(elastic.body.mesh, 1).cell_type
     degree = 2 * elastic.space.ufl_element().degree + 2
     reference, weights = (np.asarray(part) for part in basix.make_quadrature(kind, degree))
     cells = np.full(len(weights), cell)
@@ -259,7 +262,7 @@ def _cell_rule(elastic: Elasticity, cell: int):
     return weights * volume, slopes, divergence
 
 
-def _cell_stiffness(elastic: Elasticity, cell: int) -> np.ndarray:
+def _cell_stiffness(elastic: ElasticBody, cell: int) -> np.ndarray:
     """Stiffness matrix of one cell, regularised against rigid motions."""
     λ, μ = (cell_values(function, np.array([cell]))[0] for function in elastic.lame[:2])
     weights, slopes, divergence = _cell_rule(elastic, cell)

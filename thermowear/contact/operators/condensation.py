@@ -12,6 +12,7 @@ import scipy.sparse as sp
 
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
+from ...bulk.spaces import Spaces
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
 from .face_nodes import FaceNodes, face_nodes
@@ -112,7 +113,7 @@ def influence(
     distortion : DistortionRows, optional
         Receives the weak gap per nodal rise of the first of them, which is not stored.
     """
-    dim = elastic.bodies.mesh.geometry.dim
+    dim = elastic.bodies.dim
     weighted = scaled(pairing.weights, basis)
     loads = pressure_loads(trace, weighted)
     nodes = np.unique(np.flatnonzero(np.diff(trace.indptr)) // dim)
@@ -126,7 +127,7 @@ def influence(
             products[:, columns] += transpose_product(matrix, displacements)
         if distortion is not None:
             distortion.add(columns, transpose_product(thermal_loads[0], displacements))
-    comm = elastic.space.mesh.comm
+    comm = elastic.bodies.comm
     return Influence(basis, weighted, trace, touching, near, tuple(per_rise), comm)
 
 
@@ -162,7 +163,7 @@ def condense_heat(
 
     Every rank calls.
     """
-    comm = conduction.space.mesh.comm
+    comm, conduction = conduction.spaces.comm, conduction.with_factor()
     first, second = (face_nodes(trace, comm) for trace in traces)
     Φ1, Φ2 = nodal_responses(conduction, (first, second))
     at_nodes = (first, second), (Φ1, Φ2), conduction.symmetric
@@ -175,7 +176,7 @@ def nodal_responses(conduction: Conduction, faces: Sequence[FaceNodes]) -> list[
     The faces belong to bodies that are not coupled by conduction: one solution serves a node of
     each. Every rank calls.
     """
-    comm, dim = conduction.space.mesh.comm, conduction.space.mesh.topology.dim
+    comm, dim = conduction.spaces.comm, conduction.spaces.dim
     widest, n_owned = max(face.count for face in faces), len(conduction.fixed)
     nodes = [face.first + np.arange(len(face.rows)) for face in faces]
     at = np.concatenate([face.rows for face in faces]), np.concatenate(nodes)
@@ -189,14 +190,14 @@ def nodal_responses(conduction: Conduction, faces: Sequence[FaceNodes]) -> list[
     return found
 
 
-def bath_matrix(space, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
+def bath_matrix(spaces: Spaces, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
     """Matrix ``Σ E_iᵀ w s E_i`` of the bath at both faces, for `bulk.conduction`; collective."""
-    first, second = (transfer_matrix(space, trace, weights * shift) for trace in traces)
+    first, second = (transfer_matrix(spaces, trace, weights * shift) for trace in traces)
     first.axpy(1.0, second, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     return first
 
 
-def transfer_matrix(space, trace: sp.csr_matrix, sizes: np.ndarray) -> PETSc.Mat:
+def transfer_matrix(spaces: Spaces, trace: sp.csr_matrix, sizes: np.ndarray) -> PETSc.Mat:
     """Matrix ``Eᵀ diag(sizes) E`` of a transposed trace Eᵀ and sizes (n,) >= 0; collective."""
-    root = distributed(space, (trace @ sp.diags(np.sqrt(sizes))).tocsr())
+    root = distributed(spaces, (trace @ sp.diags(np.sqrt(sizes))).tocsr())
     return root.matMult(root.copy().transpose())

@@ -70,8 +70,8 @@ class CoupledExchange:
         conduction, weights = face.conduction, face.weights
         self._direct, passing_fraction, resistance = face.divided(conductance)
         between = (face.traces[0] - face.traces[1]).tocsr()
-        exchange = transfer_matrix(conduction.space, between, weights * self._direct)
-        self._face, self._comm = face, conduction.space.mesh.comm
+        exchange = transfer_matrix(conduction.spaces, between, weights * self._direct)
+        self._face, self._comm = face, conduction.spaces.comm
         self._conduction = conduction.with_bath(exchange)
         self._crossing: sp.csr_matrix | None = None
         if not passing_fraction.any():

@@ -134,10 +134,10 @@ def condense_tangential(
     """
     weighted = scaled(pairing.weights, basis)
     directions = [pairing.normals, *-tangents(pairing.normals)]
-    traces = [vector_trace(elastic.space, pairing, direction) for direction in directions]
+    traces = [vector_trace(elastic.spaces, pairing, direction) for direction in directions]
     sparse = sp.csr_matrix(weighted)
     influence = elastic.solve(sp.hstack([trace @ sparse for trace in traces], format="csr"))
-    comm = elastic.space.mesh.comm
+    comm = elastic.bodies.comm
     response = sum_over_ranks(comm, np.array([trace.T @ influence for trace in traces]))
     rigid = np.array([direction @ np.asarray(translations).T for direction in directions])
     return frictional_contact(basis, pairing.weights, pairing.gap, response, rigid, influence)

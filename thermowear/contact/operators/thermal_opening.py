@@ -15,6 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...bulk.direct_solver import multiply
+from ...bulk.field import without_fixed
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
@@ -40,10 +41,21 @@ def blocks(count: int, dim: int) -> Iterator[slice]:
 def elastic_columns(elastic: Elasticity, loads: sp.csc_matrix) -> Iterator[tuple]:
     """Solve for sparse nodal loads (n_owned, m): ranges of columns and their displacements.
 
-    Users add up what they find: a range may come once for each body, zero in the others.
+    Users add up what they find: a range comes once for each body, zero in the others, where
+    bodies are factorised one after the other for the time of their columns.
     """
-    for columns in blocks(loads.shape[1], elastic.bodies.mesh.geometry.dim):
-        yield columns, elastic.solve(loads[:, columns].tocsr())
+    spaces = elastic.spaces
+    if not elastic.each[0].choice.factorises_columns:
+        for columns in blocks(loads.shape[1], spaces.dim):
+            yield columns, elastic.solve(loads[:, columns].tocsr())
+        return
+    for body, rows in zip(elastic.each, spaces.split(np.arange(spaces.owned)), strict=True):
+        own = without_fixed(loads.tocsr()[rows], body.fixed).tocsc()
+        with body.solver_of_columns() as solver:
+            for columns in blocks(loads.shape[1], spaces.dim):
+                found = np.zeros((spaces.owned, columns.stop - columns.start), order="F")
+                found[rows] = solver.solve(own[:, columns].tocsr())
+                yield columns, found
 
 
 @dataclass(frozen=True)
@@ -109,7 +121,7 @@ class ThermalOpening:
 
         By columns also. Costs an elastic solution if the response is not stored. Every rank calls.
         """
-        comm = self.elastic.space.mesh.comm
+        comm = self.elastic.bodies.comm
         if self.per_rise:
             return opened_by(self.per_rise, rises, comm)
         columns = zip(*(rise.reshape(len(rise), -1).T for rise in rises), strict=True)
@@ -126,7 +138,7 @@ class ThermalOpening:
         Every rank calls.
         """
         if self.per_rise:
-            dim = self.elastic.bodies.mesh.geometry.dim
+            dim = self.elastic.spaces.dim
             for columns in blocks(self.loads.shape[1], dim):
                 parts = [response[:, columns] for response in self.per_rise]
                 yield columns, _combined(parts, slopes)
@@ -184,14 +196,14 @@ class DistortionRows:
     """
 
     def __init__(self, conduction: Conduction, faces: tuple[FaceNodes, FaceNodes], count: int):
-        self._conduction, self._faces = conduction, faces
+        self._conduction, self._faces = conduction.with_factor(), faces
         first, second = (np.zeros((count, face.count)) for face in faces)
         self.distortion = ThermalDistortion((first, second))
 
     def add(self, columns: slice, per_rise: np.ndarray) -> None:
         """Add the rows of a block from the weak gap per nodal rise, shape (n_owned, width)."""
         adjoint = self._conduction.adjoint_response(per_rise)
-        comm = self._conduction.space.mesh.comm
+        comm = self._conduction.spaces.comm
         for face, rows in zip(self._faces, self.distortion.per_heat, strict=True):
             rows[columns] += np.vstack(comm.allgather(adjoint[face.rows])).T
 

@@ -13,59 +13,58 @@ import numpy as np
 import scipy.sparse as sp
 from dolfinx import fem
 
-from ...bulk.field import basis_element, owned
+from ...bulk.field import basis_element
+from ...bulk.spaces import Spaces
 from ...lagrange import tabulated
 from ..search.pairing import PairedFace, Pairing
 
 
-def value_trace(space: fem.FunctionSpace, side: PairedFace) -> sp.csr_matrix:
-    """Transposed trace Eᵀ of a scalar space: shape (n_owned, n_points). Every rank calls.
+def value_trace(spaces: Spaces, side: PairedFace) -> sp.csr_matrix:
+    """Transposed trace Eᵀ of scalar spaces: shape (n_owned, n_points). Every rank calls.
 
     ``E v`` are the values of a field at the points of one side.
     """
-    nodes, point, values = _local_values(space, side)
-    return gather_rows(space, nodes, point, values, len(side.t))
+    index = side.face.body
+    nodes, point, values = _local_values(spaces.each[index], side)
+    return gather_rows(spaces, index, nodes, point, values, len(side.t))
 
 
-def gap_trace(space: fem.FunctionSpace, pairing: Pairing) -> sp.csr_matrix:
-    """Transposed gap trace Bᵀ of a vector space: shape (n_owned, n_points). Every rank calls.
+def gap_trace(spaces: Spaces, pairing: Pairing) -> sp.csr_matrix:
+    """Transposed gap trace Bᵀ of vector spaces: shape (n_owned, n_points). Every rank calls.
 
     ``B u = (u2 - u1)·n``, see `pairing` for the sign.
     """
-    return vector_trace(space, pairing, pairing.normals)
+    return vector_trace(spaces, pairing, pairing.normals)
 
 
-def vector_trace(
-    space: fem.FunctionSpace, pairing: Pairing, directions: np.ndarray
-) -> sp.csr_matrix:
+def vector_trace(spaces: Spaces, pairing: Pairing, directions: np.ndarray) -> sp.csr_matrix:
     """Transposed trace of ``(u2 - u1)·e``: shape (n_owned, n_points). Every rank calls.
 
     Parameters
     ----------
-    space : dolfinx.fem.FunctionSpace
-        Vector space.
+    spaces : Spaces
+        Vector spaces.
     pairing : Pairing
     directions : ndarray, shape (n_points, gdim)
         Direction e at each point; not necessarily a unit vector (traction of sliding contact).
     """
-    result = sp.csr_matrix((owned(space), len(pairing.weights)))
+    count, width = len(pairing.weights), spaces.components
+    result = sp.csr_matrix((spaces.owned, count))
     for sign, side in zip((-1.0, 1.0), pairing.sides, strict=True):
-        nodes, point, values = _local_values(space, side)
-        for component in range(space.dofmap.index_map_bs):
+        index = side.face.body
+        nodes, point, values = _local_values(spaces.each[index], side)
+        for component in range(width):
             scaled = sign * directions[point, component] * values
-            dofs = nodes * space.dofmap.index_map_bs + component
-            result = result + gather_rows(space, dofs, point, scaled, len(pairing.weights))
+            dofs = nodes * width + component
+            result = result + gather_rows(spaces, index, dofs, point, scaled, count)
     return result.tocsr()
 
 
-def distributed(space: fem.FunctionSpace, trace: sp.csr_matrix) -> PETSc.Mat:
+def distributed(spaces: Spaces, trace: sp.csr_matrix) -> PETSc.Mat:
     """Transposed trace as a PETSc matrix, columns (points) distributed over the ranks too."""
-    index_map, bs = space.dofmap.index_map, space.dofmap.index_map_bs
-    rows = (index_map.size_local * bs, index_map.size_global * bs)
     csr = (trace.indptr.astype(PETSc.IntType), trace.indices.astype(PETSc.IntType), trace.data)
-    return PETSc.Mat().createAIJ(
-        (rows, (PETSc.DECIDE, trace.shape[1])), csr=csr, comm=space.mesh.comm
-    )
+    sizes = (spaces.owned, spaces.total), (PETSc.DECIDE, trace.shape[1])
+    return PETSc.Mat().createAIJ(sizes, csr=csr, comm=spaces.comm)
 
 
 def _local_values(space: fem.FunctionSpace, side: PairedFace):
@@ -112,11 +111,12 @@ def reference_points(side: PairedFace, chosen: np.ndarray, cell_type) -> np.ndar
     return reference
 
 
-def gather_rows(space, rows, columns, values, n_points: int) -> sp.csr_matrix:
-    """Sum entries of all ranks into the owned rows of each rank; rows are local dof numbers.
+def gather_rows(spaces: Spaces, index: int, rows, columns, values, n_points: int) -> sp.csr_matrix:
+    """Sum entries of all ranks into the owned rows of each rank; shape (n_owned, n_points).
 
-    Every rank calls; shape (n_owned, n_points).
+    Rows are local dof numbers of the body with an index. Every rank calls.
     """
+    space = spaces.each[index]
     comm, bs, index_map = space.mesh.comm, space.dofmap.index_map_bs, space.dofmap.index_map
     nodes = index_map.local_to_global((rows // bs).astype(np.int32))
     rows = nodes * bs + rows % bs
@@ -131,7 +131,8 @@ def gather_rows(space, rows, columns, values, n_points: int) -> sp.csr_matrix:
         received = comm.alltoall(parcels)
         rows, columns, values = (np.concatenate([part[k] for part in received]) for k in range(3))
     shape = (index_map.size_local * bs, n_points)
-    return sp.coo_matrix((values, (rows - first, columns)), shape=shape).tocsr()
+    own = sp.coo_matrix((values, (rows - first, columns)), shape=shape)
+    return spaces.placed(index, own.tocsr())
 
 
 def transpose_product(matrix: PETSc.Mat, columns: np.ndarray) -> np.ndarray:

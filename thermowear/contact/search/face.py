@@ -13,9 +13,9 @@ from functools import cached_property
 
 import basix
 import numpy as np
-from dolfinx import fem
 
 from ...bulk.bodies import Bodies
+from ...bulk.body_mesh import BodyMesh
 from ...bulk.field import reference_element
 from ...compat import coordinate_element
 from ...errors import CaseError
@@ -162,7 +162,7 @@ class Surface(FacetSet):
 
 
 def gather_faces(
-    bodies: Bodies, surfaces: tuple[str, str], softness: fem.Function | None = None
+    bodies: Bodies, surfaces: tuple[str, str], softness: dict[str, float] | None = None
 ) -> tuple[Face | Surface, Face | Surface]:
     """Gather both contact faces, closed curves cut; see `gather_face`. Every rank calls."""
     first, second = (gather_face(bodies, surface, softness) for surface in surfaces)
@@ -189,7 +189,7 @@ def _opened(face: Face | Surface, other: Face | Surface) -> Face | Surface:
 
 
 def gather_face(
-    bodies: Bodies, surface: str, softness: fem.Function | None = None
+    bodies: Bodies, surface: str, softness: dict[str, float] | None = None
 ) -> Face | Surface:
     """Gather the facets of a surface from all ranks in order; every rank calls.
 
@@ -197,15 +197,15 @@ def gather_face(
     ----------
     bodies : Bodies
     surface : str
-    softness : dolfinx.fem.Function, optional
-        ``(1 - ν²) / E``, constant on each cell; by default equal for all materials [1/Pa].
+    softness : dict of str to float, optional
+        ``(1 - ν²) / E`` by part; by default equal for all materials [1/Pa].
     """
-    gather = _gather_surface if bodies.mesh.topology.dim == 3 else _gather_chain
-    return gather(bodies, surface, softness)
+    gather, index = _gather_surface if bodies.dim == 3 else _gather_chain, bodies.index_of(surface)
+    return replace(gather(bodies.each[index], surface, softness), body=index)
 
 
-def _gather_chain(bodies: Bodies, surface: str, softness: fem.Function | None) -> Face:
-    table = gather_facets(bodies, surface, _facet_nodes(bodies.mesh)[1], softness)
+def _gather_chain(body: BodyMesh, surface: str, softness: dict[str, float] | None) -> Face:
+    table = gather_facets(body, surface, _facet_nodes(body.mesh)[1], softness)
     order, flip = _chain(table.numbers[:, [0, -1]], table.nodes, surface)
     table, flip = FacetTable(*(column[order] for column in table)), flip[order]
     nodes = np.where(flip[:, None, None], table.nodes[:, ::-1], table.nodes)
@@ -252,10 +252,10 @@ def _disconnected_message(surface: str) -> str:
     )
 
 
-def _gather_surface(bodies: Bodies, surface: str, softness: fem.Function | None) -> Surface:
+def _gather_surface(body: BodyMesh, surface: str, softness: dict[str, float] | None) -> Surface:
     """Curved facets in the order of their cells in the mesh file."""
-    kind, nodes_of_facet = _facet_nodes(bodies.mesh)
-    table = gather_facets(bodies, surface, nodes_of_facet, softness)
+    kind, nodes_of_facet = _facet_nodes(body.mesh)
+    table = gather_facets(body, surface, nodes_of_facet, softness)
     order = np.lexsort((table.local_facet, table.original_cell))
     table = FacetTable(*(column[order] for column in table))
     at_corners = corner_nodes(order_of(kind, table.nodes.shape[1]), kind)

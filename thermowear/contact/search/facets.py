@@ -9,9 +9,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from dolfinx import fem
 
-from ...bulk.bodies import Bodies
+from ...bulk.body_mesh import BodyMesh
 from ...compat import geometry_dofmap
 from ...errors import CaseError
 from ...lagrange import corner_nodes, lattice, lobatto, on_lattice, order_of
@@ -58,6 +57,8 @@ class FacetSet(ABC):
         both tangents, -1 opposite to it.
     rank, cell, local_facet : ndarray of int, shape (n_facets,)
         Rank that owns the cell of the facet, local cell index, and local facet index.
+    body : int
+        Index of the body in `bulk.bodies.Bodies`.
     kind : str
         ``"interval"`` in a section, ``"quadrilateral"`` or ``"triangle"`` in space.
     softness : float or ndarray, shape (n_facets,)
@@ -79,6 +80,7 @@ class FacetSet(ABC):
     softness: float | np.ndarray = 1.0
     name: str = "the contact face"
     wears: bool = False
+    body: int = 0
 
     @property
     @abstractmethod
@@ -224,31 +226,32 @@ class FacetTable(NamedTuple):
 
 
 def gather_facets(
-    bodies: Bodies, surface: str, nodes_of_facet: np.ndarray, softness: fem.Function | None
+    body: BodyMesh, surface: str, nodes_of_facet: np.ndarray, softness: dict[str, float] | None
 ) -> FacetTable:
     """Gather the facets of a surface from the ranks that own their cells; every rank calls.
 
     Parameters
     ----------
-    bodies : Bodies
+    body : BodyMesh
     surface : str
     nodes_of_facet : ndarray of int, shape (n_facets, n_nodes)
         Indices of the nodes of each facet of a cell.
-    softness : dolfinx.fem.Function or None
-        Constant on each cell; None: 1.
+    softness : dict of str to float or None
+        By part; None: 1.
     """
-    mesh, topology = bodies.mesh, bodies.mesh.topology
+    mesh, topology = body.mesh, body.mesh.topology
     tdim, fdim = topology.dim, topology.dim - 1
     to_cells, to_facets = topology.connectivity(fdim, tdim), topology.connectivity(tdim, fdim)
-    found = [(to_cells.links(facet)[0], facet) for facet in bodies.facets(surface)]
-    mine = [(c, facet) for c, facet in found if c < topology.index_map(tdim).size_local]
+    found = [(to_cells.links(facet)[0], facet) for facet in body.facets(surface)]
+    mine = [(c, facet) for c, facet in found if c < body.n_cells]
     cells = np.array([c for c, _ in mine], dtype=np.int32)
     local = np.array([np.flatnonzero(to_facets.links(c) == f)[0] for c, f in mine], dtype=np.int32)
     of_cells, x = geometry_dofmap(mesh)[cells], mesh.geometry.x[:, :tdim]
     of_facets = np.take_along_axis(of_cells, nodes_of_facet[local], axis=1)
     soft = np.ones(len(cells))
     if softness is not None:
-        soft = softness.x.array[softness.function_space.dofmap.list[cells, 0]].astype(float)
+        of_parts = np.array([softness.get(part, np.nan) for part in body.names])
+        soft = of_parts[body.parts_of_cells(cells)]
     columns = FacetTable(
         x[of_facets],
         np.asarray(mesh.geometry.input_global_indices)[of_facets],

@@ -7,16 +7,16 @@ change with the better discretisation.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
-from ...bulk.field import owned
 from ...bulk.heat.heat_equation import conducting, given_rises, transferring
 from ...bulk.mechanics.elasticity import fixed_values
 from ...bulk.mechanics.enriched import EnrichedProblem
-from ...bulk.mechanics.surplus import surplus_space
+from ...bulk.mechanics.surplus import surplus_spaces
 from ...contact.operators.heat import BaselineResponse
 from ...contact.operators.heat_exchange import InterfaceHeat
 from ...contact.operators.pressure import dense, scaled
@@ -39,12 +39,12 @@ class TemperatureChange:
     ----------
     faces : ndarray, shape (2, n)
         Change at the points of both faces [K].
-    rise : UFL expression
-        Rise in the bodies including the change [K].
+    rises : list of UFL expression
+        Rise in each body including the change [K].
     """
 
     faces: np.ndarray
-    rise: Any
+    rises: list[Any]
 
 
 class EnrichedBodies:
@@ -53,18 +53,21 @@ class EnrichedBodies:
     def __init__(self, system: System):
         elastic, degree = system.elastic, system.model.discretisation.degree
         bodies = elastic.bodies
-        surplus = surplus_space(bodies.mesh, degree, bodies.mesh.geometry.dim)
+        surplus = surplus_spaces(bodies, degree, bodies.dim)
         clamped, symmetric, rollers = supports(system.model)
         guided = {0: symmetric, 1: rollers}
-        held = fixed_values(bodies, elastic.kinematics, surplus, clamped, guided)
+        held = [
+            fixed_values(body, elastic.kinematics, space, clamped, guided)
+            for body, space in zip(bodies.each, surplus.each, strict=True)
+        ]
         self._system = system
         self._degree = degree + 1
         self._problem = EnrichedProblem(
-            elastic.space,
+            elastic.spaces,
             surplus,
-            (lambda u, δu: elastic.virtual_work(u, δu, self._degree),),
+            [(partial(body.virtual_work, degree=self._degree),) for body in elastic.each],
             elastic.solve,
-            (elastic.fixed, held),
+            (elastic.fixed, np.concatenate(held)),
         )
         self._trace = sp.vstack([system.trace, gap_trace(surplus, system.pairing)])
 
@@ -73,11 +76,11 @@ class EnrichedBodies:
         system, problem = self._system, self._problem
         loads, thermal, before = self._loads(contact), system.thermal, state.temperatures
         if heated is not None:
-            loads = loads + problem.loads(
-                lambda δu: system.elastic.thermal_work(heated.rise, δu, self._degree)
-            )
+            bodies = zip(system.elastic.each, heated.rises, strict=True)
+            works = [partial(b.thermal_work, rise, degree=self._degree) for b, rise in bodies]
+            loads = loads + problem.loads(works)
         elif before is not None and thermal is not None:
-            loads[: owned(problem.space)] += thermal.forces(before.rise)
+            loads[: problem.spaces.owned] += thermal.forces(before.rise)
         residual = problem.residual(problem.field(state.displacement), loads)
         return self._gap(problem.correction(residual))
 
@@ -96,11 +99,11 @@ class EnrichedBodies:
         loads = np.concatenate(
             [
                 vector_trace(space, system.pairing, traction) @ system.weights
-                for space in (problem.space, problem.surplus)
+                for space in (problem.spaces, problem.surplus)
             ]
         )
-        for work in surface_loads(system.model.holder, system.elastic):
-            loads = loads + problem.loads(work)
+        for works in surface_loads(system.model.holder, system.elastic):
+            loads = loads + problem.loads(works)
         return loads
 
 
@@ -131,9 +134,9 @@ def temperature_change(
     exchange = face.exchange(conductance)
     none = np.zeros(len(face.weights))
     coupled = exchange.state(none, BaselineResponse((resolved[:, 0], resolved[:, 1])))
-    change[: owned(conduction.space)] += conduction.respond(face.nodal_heat(coupled, bath=True))
+    change[: conduction.spaces.owned] += conduction.respond(face.nodal_heat(coupled, bath=True))
     details = _levelled(uncoupled - resolved.T, face, conductance)
-    return TemperatureChange(np.array(coupled.rise) + details, problem.function(before + change))
+    return TemperatureChange(np.array(coupled.rise) + details, problem.functions(before + change))
 
 
 def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -> np.ndarray:
@@ -154,12 +157,17 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
     conduction, model, bodies = thermal.conduction, system.model, system.bodies
     degree, kinematics = model.discretisation.degree, system.elastic.kinematics
     conductivities = {part: m.conductivity for part, m in conducting_parts(model).items()}
-    surplus = surplus_space(bodies.mesh, degree)
-    terms = [conducting(bodies, kinematics, conductivities, degree + 1)]
-    terms += transferring(bodies, kinematics, cooling(model, heat))
+    surplus, given_h = surplus_spaces(bodies, degree), cooling(model, heat)
+    terms = [
+        [
+            conducting(body, kinematics, conductivities, degree + 1),
+            *transferring(body, kinematics, given_h),
+        ]
+        for body in bodies.each
+    ]
     shifts = dict.fromkeys(model.interface.faces, thermal.face.shift)
-    bath = transferring(bodies, kinematics, shifts)
+    bath = [transferring(body, kinematics, shifts) for body in bodies.each]
     given, _ = given_rises(bodies, surplus, dict.fromkeys(heat.temperature, 0.0), None)
     return EnrichedProblem(
-        conduction.space, surplus, terms, conduction.respond, (conduction.fixed, given), bath
+        conduction.spaces, surplus, terms, conduction.respond, (conduction.fixed, given), bath
     )

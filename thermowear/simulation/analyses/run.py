@@ -176,15 +176,15 @@ def _streamed(system: System, analysis: Analysis) -> str | None:
 def _iterations(system: System) -> dict[str, int]:
     """Largest numbers of multigrid iterations of a solution, if there are any."""
     thermal = system.thermal
-    factors = {
-        "elasticity": system.elastic.factor,
-        "conduction": None if thermal is None else thermal.conduction.factor,
+    solvers = {
+        "elasticity": [body.factor for body in system.elastic.each],
+        "conduction": [] if thermal is None else [thermal.conduction.factor],
     }
-    return {
-        f"multigrid_iterations_{name}": max(factor.iterations)
-        for name, factor in factors.items()
-        if isinstance(factor, MultigridSolver) and factor.iterations
+    counted = {
+        name: [k for one in some if isinstance(one, MultigridSolver) for k in one.iterations]
+        for name, some in solvers.items()
     }
+    return {f"multigrid_iterations_{name}": max(ks) for name, ks in counted.items() if ks}
 
 
 def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Observer) -> Result:

@@ -96,7 +96,7 @@ def moved(system: System, offset: float, direction: int) -> System:
     return replace(
         system,
         pairing=pairing,
-        trace=gap_trace(system.elastic.space, pairing),
+        trace=gap_trace(system.elastic.spaces, pairing),
         basis=basis,
         holder=hold(
             in_place,

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...balances import relative, require
-from ...bulk.mesh_motion import HarmonicExtension
+from ...bulk.mesh_motion import extended
 from ...bulk.transfer import transferred
 from ...contact.search.face import Surface
 from ...contact.search.refinement import Rule
@@ -224,8 +224,7 @@ def _followed(
         return moved, lost
 
     moved, lost = on_root(system.comm, outlined)
-    follow = HarmonicExtension(system.bodies.mesh)
-    return replace(worn.mesh, points=worn.mesh.points + follow(moved)), lost
+    return replace(worn.mesh, points=worn.mesh.points + extended(system.bodies, moved)), lost
 
 
 def _remeshed(
@@ -255,9 +254,8 @@ def _carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.n
     assert after.thermal is not None
     return transferred(
         rise,
-        before.thermal.conduction.space,
-        after.thermal.conduction.space,
+        before.thermal.conduction.spaces,
+        after.thermal.conduction.spaces,
         before.bodies,
         after.bodies,
-        [body.parts for body in before.model.bodies],
     )

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...compat import geometry_dofmap
 from ...contact.wear.worn_face import curvatures
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
@@ -291,7 +290,6 @@ def _thickness(system: System, index: int) -> float:
     out = (pairing.weights @ pairing.normals) * (1 if index == 0 else -1)
     out = out / np.linalg.norm(out)
     middle = np.average(pairing.points, axis=0, weights=pairing.weights)
-    parts = system.model.bodies[index].parts
-    cells = np.concatenate([bodies.cell_tags.find(bodies.body_tag(part)) for part in parts])
-    nodes = bodies.mesh.geometry.x[geometry_dofmap(bodies.mesh)[cells].ravel(), : len(middle)]
+    mesh = bodies.each[pairing.sides[index].face.body].mesh
+    nodes = mesh.geometry.x[:, : len(middle)]
     return max(system.comm.allgather(float(((middle - nodes) @ out).max(initial=0.0))))

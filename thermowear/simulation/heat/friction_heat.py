@@ -176,6 +176,6 @@ def _kept_sizes(system: System, thermal: ThermalSystem) -> int:
     # responses of the faces, their exchange, and the weak gap per heat
     functions, nodes = system.basis.shape[1], len(conduction.fixed)
     dense = sum(faces) * (max(faces) + sum(faces) + 2 * functions) + functions**2
-    numbers = dense + _FILL[conduction.space.mesh.topology.dim] * nodes
+    numbers = dense + _FILL[conduction.spaces.dim] * nodes
     least = min(system.comm.allgather(_MEMORY / (8 * numbers)))
     return max(int(least), _FEWEST)

@@ -98,7 +98,7 @@ def body_state(system: System, contact: ContactState) -> BodyState:
     loads = system.traction @ (system.weights * pressure)
     if shear is not None:
         pairing = system.pairing
-        along = vector_trace(system.elastic.space, pairing, -tangents(pairing.normals)[0])
+        along = vector_trace(system.elastic.spaces, pairing, -tangents(pairing.normals)[0])
         loads = loads + along @ (system.weights * shear)
     if system.dead_load is not None:
         loads = loads + system.dead_load
@@ -162,7 +162,7 @@ def _with_rotations(system: System) -> list[RigidMode]:
     displacement they cause small strains, and moments balance only within the discretisation error.
     """
     degree = system.model.discretisation.degree
-    curved = coordinate_element(system.bodies.mesh).degree > degree
+    curved = any(coordinate_element(body.mesh).degree > degree for body in system.bodies.each)
     return [d for d in system.holder.rigid_modes if not (curved and d.motion.rotation.any())]
 
 

@@ -9,16 +9,20 @@ from itertools import permutations
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
+from ...bulk.bodies import Bodies
+from ...compat import coordinate_element
+
 _SMOOTH, _DRAWN_CELLS = 6, 325_000
 """Number of parts of the side of a curved cell that looks smooth; parts of all cells up to which
 cells are divided more finely than their fields need."""
 
 
-def divisions(mesh, least: int) -> int:
+def divisions(bodies: Bodies, least: int) -> int:
     """Number of parts of each side of a cell: more in space where few curved cells look angular."""
-    if mesh.topology.dim < 3 or mesh.geometry.cmap.degree == 1:
+    meshes = [body.mesh for body in bodies.each]
+    if bodies.dim < 3 or all(coordinate_element(mesh).degree == 1 for mesh in meshes):
         return least
-    cells = mesh.topology.index_map(mesh.topology.dim).size_global
+    cells = sum(mesh.topology.index_map(3).size_global for mesh in meshes)
     fine = int((_DRAWN_CELLS / max(cells, 1)) ** (1 / 3))
     return max(least, min(fine, _SMOOTH))
 

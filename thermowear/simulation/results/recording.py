@@ -11,8 +11,8 @@ import numpy as np
 import ufl
 from dolfinx import fem
 
-from ...bulk.field import as_function
-from ...bulk.heat.varying import straining_rise
+from ...bulk.body_mesh import BodyMesh
+from ...bulk.heat.varying import straining_rises
 from ...compat import evaluate
 from ...contact.wear.implicit_step import WearRates
 from ...laws.motions import RigidMotion, combined
@@ -187,35 +187,29 @@ def sample(snapshot: Snapshot) -> BodyFields | None:
     Every rank calls; ranks other than 0 return None. Cells are in the order of the mesh file.
     """
     system, state, motion = snapshot.system, snapshot.bodies, snapshot.motion
-    mesh, elastic = system.bodies.mesh, system.elastic
-    n = divisions(mesh, max(system.model.discretisation.degree, 2))
-    grid, pieces = GRIDS[mesh.topology.cell_name()](n)
-    centre = grid.mean(axis=0)
-    inside = centre + (grid - centre) * (1 - _INSET)
-    cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
-    u = as_function(elastic.space, with_holder(system, state.displacement, motion), "u")
-    du = as_function(elastic.space, state.displacement, "u")
-    rise, straining, heated, thermal = None, None, state.temperatures, system.thermal
+    elastic, thermal, heated = system.elastic, system.thermal, state.temperatures
+    n = divisions(system.bodies, max(system.model.discretisation.degree, 2))
+    kind = system.bodies.each[0].mesh.topology.cell_name()
+    grid, pieces = GRIDS[kind](n)
+    u = elastic.spaces.functions(with_holder(system, state.displacement, motion), "u")
+    du = elastic.spaces.functions(state.displacement, "u")
+    parts = zip(elastic.each, u, du, strict=True)
+    wanted = [[shown, _von_mises(body.stress(d))] for body, shown, d in parts]
     if heated is not None and thermal is not None:
-        space = thermal.conduction.space
-        rise = as_function(space, heated.rise, "rise")
-        straining = straining_rise(space, heated.rise, system.bodies, thermal.expansions)
-    σ = elastic.stress(du, straining)
-    wanted = [u, _von_mises(σ)] + ([] if rise is None else [rise])
-    values = [evaluate(fem.Expression(ufl.SpatialCoordinate(mesh), grid), mesh, cells)]
-    values += [evaluate(fem.Expression(w, inside), mesh, cells) for w in wanted]
-    body = np.zeros(len(cells), dtype=np.int64)
-    tags = system.bodies.cell_tags
-    local = tags.indices < len(cells)
-    body[tags.indices[local]] = _body_of_tag(system)[tags.values[local]]
-    original = mesh.topology.original_cell_index[: len(cells)]
-    parts = mesh.comm.gather((original, body, *values), root=0)
-    if parts is None:
-        return None
-    order = np.argsort(np.concatenate([part[0] for part in parts]))
-    body, points, displacement, mises, *temperature = (
-        np.concatenate([part[k] for part in parts])[order] for k in range(1, len(parts[0]))
+        spaces = thermal.conduction.spaces
+        straining = straining_rises(spaces, heated.rise, system.bodies, thermal.expansions)
+        rises = spaces.functions(heated.rise, "rise")
+        hot = zip(elastic.each, u, du, straining, rises, strict=True)
+        wanted = [[shown, _von_mises(b.stress(d, T)), rise] for b, shown, d, T, rise in hot]
+    found = system.bodies.in_file_order(
+        [
+            (_body_of_cells(system, body), *_evaluated(body.mesh, grid, fields))
+            for body, fields in zip(system.bodies.each, wanted, strict=True)
+        ]
     )
+    if found is None:
+        return None
+    body, points, displacement, mises, *temperature = found
     if system.worn is not None:
         placed = RigidMotion(*system.worn.holder, np.zeros(3)).at(points[body == 1])
         points[body == 1] += placed
@@ -226,11 +220,21 @@ def sample(snapshot: Snapshot) -> BodyFields | None:
     return BodyFields(points, pieces, body, displacement, absolute, mises[..., 0])
 
 
-def _body_of_tag(system: System) -> np.ndarray:
-    """Number of the body (from 1) by cell tag, including the tags of its zones; 0 for tag 0."""
+def _evaluated(mesh, grid: np.ndarray, fields: list) -> list[np.ndarray]:
+    """Coordinates and fields on a grid in each owned cell, (n_cells, n_points, components)."""
+    cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
+    centre = grid.mean(axis=0)
+    inside = centre + (grid - centre) * (1 - _INSET)
+    values = [evaluate(fem.Expression(ufl.SpatialCoordinate(mesh), grid), mesh, cells)]
+    return values + [evaluate(fem.Expression(field, inside), mesh, cells) for field in fields]
+
+
+def _body_of_cells(system: System, body: BodyMesh) -> np.ndarray:
+    """Number of the body (from 1) that each owned cell belongs to."""
     bodies = enumerate(system.model.bodies, start=1)
-    numbers = {part: number for number, body in bodies for part in body.parts}
-    return np.array([0, *(numbers[part] for part in system.bodies.names)])
+    numbers = {part: number for number, each in bodies for part in each.parts}
+    of_parts = np.array([numbers[part] for part in body.names])
+    return of_parts[body.parts_of_cells(np.arange(body.n_cells))]
 
 
 def with_holder(system: System, displacement: np.ndarray, motion: RigidMotion) -> np.ndarray:

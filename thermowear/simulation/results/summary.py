@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...bulk.field import total
 from ...contact.operators.pressure import contact_zones
 from ...laws.coefficients import Constant
 from ...results import Result
@@ -51,8 +50,8 @@ def summarise(end: Snapshot, time: float) -> dict:
     summary = {
         "model": model.kinematics,
         "method": model.interface.method.name,
-        "dofs_displacement": total(system.elastic.space),
-        "dofs_temperature": 0 if thermal is None else total(thermal.conduction.space),
+        "dofs_displacement": system.elastic.spaces.total,
+        "dofs_temperature": 0 if thermal is None else thermal.conduction.spaces.total,
         "contact_points": len(w),
         "friction": system.friction if isinstance(model.interface.friction, Constant) else None,
         "normal_force_N": system.normal_force(p),

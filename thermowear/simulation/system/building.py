@@ -137,7 +137,7 @@ def _paired(
     model: Model, comm, kinematics: Kinematics, bodies: Bodies, worn: WornGeometry | None
 ) -> tuple[Pairing, np.ndarray]:
     softness, wears = softness_of_parts(model), bool(model.interface.wearing_in_place)
-    gathered = gather_faces(bodies, model.interface.faces, bodies.per_body(softness))
+    gathered = gather_faces(bodies, model.interface.faces, softness)
     faces = [replace(face, wears=wears) for face in gathered]
     if worn is None:
         return contact_points(model, comm, kinematics, *faces)
@@ -157,7 +157,7 @@ def elastic_system(
     -------
     elastic : Elasticity
     trace : csr_matrix, shape (n_owned, n)
-        Bᵀ of the gap in the displacement space.
+        Bᵀ of the gap in the displacement spaces.
     """
     hot = model.heat is not None
     materials = {
@@ -166,7 +166,7 @@ def elastic_system(
     }
     degree = model.discretisation.degree
     elastic = elasticity(bodies, kinematics, degree, materials, *supports(model), choice)
-    return elastic, gap_trace(elastic.space, pairing)
+    return elastic, gap_trace(elastic.spaces, pairing)
 
 
 def supports(model: Model) -> tuple[list[str], tuple[str, ...], tuple[str, ...]]:

@@ -141,7 +141,7 @@ def facing_parts(bodies: Bodies, pairing: Pairing) -> Facing:
 
 def _parts_of_facets(bodies: Bodies, face: Face | Surface) -> np.ndarray:
     """Index in ``bodies.names`` of the part that each facet belongs to, shape (n_facets,)."""
-    mine = face.rank == bodies.mesh.comm.rank
+    mine = face.rank == bodies.comm.rank
     parts = np.zeros(len(face.rank), dtype=np.int64)
-    parts[mine] = bodies.parts_of_cells(face.cell[mine])
-    return bodies.mesh.comm.allreduce(parts)
+    parts[mine] = bodies.each[face.body].parts_of_cells(face.cell[mine])
+    return bodies.comm.allreduce(parts)

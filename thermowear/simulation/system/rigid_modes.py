@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...bulk.compiled import nodal_loads
 from ...bulk.mechanics.elasticity import Elasticity
 from ...contact.operators.rigid_motion import RigidMode
 from ...contact.search.pairing import Pairing
@@ -91,12 +90,12 @@ def _closes(turn: RigidMotion, pairing: Pairing) -> bool:
 
 def dead_load(holder: Holder, elastic: Elasticity) -> np.ndarray | None:
     """Nodal forces of the loads on surfaces, shape (n_owned,) [N]; None without surface loads."""
-    loads = [nodal_loads(elastic.space, work) for work in surface_loads(holder, elastic)]
+    loads = [elastic.spaces.loads(works) for works in surface_loads(holder, elastic)]
     return np.sum(loads, axis=0) if loads else None
 
 
-def surface_loads(holder: Holder, elastic: Elasticity) -> list[Callable]:
-    """Forms of the work of the loads on surfaces, see `Elasticity`."""
+def surface_loads(holder: Holder, elastic: Elasticity) -> list[list[Callable]]:
+    """Forms by body of the work of the loads on surfaces, see `Elasticity`."""
     direction = np.array(holder.load_direction)
     forces = [
         elastic.surface_work(surface, force * direction)
@@ -127,4 +126,4 @@ def dead_resultant(
     work = (forces.reshape(nodes.shape) * motion.at(nodes)).sum(axis=1)
     on_1 = elastic.owned_by(*upper)
     parts = np.array([work[on_1].sum(), work[~on_1].sum()])
-    return sum_over_ranks(elastic.bodies.mesh.comm, parts)
+    return sum_over_ranks(elastic.bodies.comm, parts)

@@ -12,7 +12,6 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...bulk.bodies import Bodies
-from ...bulk.field import total
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.solver_choice import SolverChoice
 from ...contact.operators.condensation import (
@@ -96,7 +95,7 @@ class System:
 
     @cached_property
     def comm(self):
-        return self.bodies.mesh.comm
+        return self.bodies.comm
 
     @cached_property
     def zone(self) -> Zone | None:
@@ -207,7 +206,7 @@ class System:
         thermal, m = self.thermal, self.basis.shape[1]
         if thermal is None or isinstance(thermal.face, CoupledHeat):
             return OpeningStorage(0, m, self.choice.available)
-        nodes = len(thermal.load_matrices) * total(thermal.conduction.space)
+        nodes = len(thermal.load_matrices) * thermal.conduction.spaces.total
         return OpeningStorage(nodes, m, self.choice.available)
 
     @cached_property
@@ -254,4 +253,4 @@ class System:
         """Traces of the displacement along each coordinate, shape (n_owned, n) each."""
         n, gdim = self.traction_direction.shape
         units = (np.tile(unit, (n, 1)) for unit in np.eye(gdim))
-        return [vector_trace(self.elastic.space, self.pairing, unit) for unit in units]
+        return [vector_trace(self.elastic.spaces, self.pairing, unit) for unit in units]

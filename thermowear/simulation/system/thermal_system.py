@@ -11,7 +11,6 @@ import numpy as np
 
 from ...bulk.bodies import Bodies
 from ...bulk.compiled import surface_area
-from ...bulk.field import lagrange_space
 from ...bulk.heat.advection import Passage
 from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.heat_equation import ThermalMaterial, conduction, given_rises, surface_heat
@@ -25,6 +24,7 @@ from ...bulk.heat.varying import (
 from ...bulk.kinematics import Kinematics
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.solver_choice import SolverChoice
+from ...bulk.spaces import lagrange_spaces
 from ...contact.operators.condensation import bath_matrix, condense_heat
 from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.operators.face_nodes import FaceNodes
@@ -172,20 +172,20 @@ def thermal_system(
     """Assemble conduction, and condense it if need be. Every rank calls."""
     bodies, kinematics = elastic.bodies, elastic.kinematics
     with phases("assemble conduction"):
-        space = lagrange_space(bodies.mesh, model.discretisation.degree)
+        spaces = lagrange_spaces(bodies, model.discretisation.degree)
         upper, lower = pairing.sides
-        traces = (value_trace(space, upper), value_trace(space, lower))
+        traces = (value_trace(spaces, upper), value_trace(spaces, lower))
         materials = conducting_parts(model)
         shift = max(_conductivities(model, heat, materials)) / pairing.extent
         given = {
             name: temperature_at(value, 0.0) - heat.ambient
             for name, value in heat.temperature.items()
         }
-        bath = bath_matrix(space, traces, pairing.weights, shift)
+        bath = bath_matrix(spaces, traces, pairing.weights, shift)
         conducting = conduction(
             bodies,
             kinematics,
-            space,
+            spaces,
             materials,
             cooling(model, heat),
             given,
@@ -193,7 +193,7 @@ def thermal_system(
             _passage(model, heat),
             choice,
         )
-        load = elastic.thermal_load(space)
+        load = elastic.thermal_load(spaces)
         loads = thermal_loads(model, heat, bodies, kinematics, conducting)
         conducting, expansions = _varying(model, heat, conducting, elastic, materials)
     face: InterfaceHeat | CoupledHeat
@@ -232,7 +232,7 @@ def _varying(
         varying_conduction(
             conducting, elastic.bodies, elastic.kinematics, materials, conducts, ambient
         ),
-        varying_expansion(elastic, conducting.space, expands, ambient),
+        varying_expansion(elastic, conducting.spaces, expands, ambient),
     )
 
 
@@ -280,17 +280,17 @@ def thermal_loads(
     model: Model, heat: Heat, bodies: Bodies, kinematics: Kinematics, conduction: Conduction
 ) -> ThermalLoads:
     """Assemble the thermal loads of a model with heat. Every rank calls."""
-    space = conduction.space
+    spaces = conduction.spaces
     total = np.zeros(len(conduction.fixed))
     areas = {s: surface_area(bodies, kinematics, s) for s in (*heat.flux, *heat.power)}
     powers = {s: q * model.ring(s) * areas[s] for s, q in heat.flux.items()} | dict(heat.power)
     for surface, power in powers.items():
-        total += surface_heat(bodies, kinematics, space, surface, power / areas[surface])
+        total += surface_heat(bodies, kinematics, spaces, surface, power / areas[surface])
     given, surroundings = {}, None
     if any(isinstance(T, TimeFunction) for T in heat.temperature.values()):
         for surface, T in heat.temperature.items():
             unit = {name: float(name == surface) for name in heat.temperature}
-            given[surface] = T, given_rises(bodies, space, unit, conduction.even)[1]
+            given[surface] = T, given_rises(bodies, spaces, unit, conduction.even)[1]
     if heat.ambient_history is not None:
         surroundings = heat.ambient_history, conduction.per_ambient()
     constant = ThermalLoad(total, sum(powers.values()), sum(map(abs, powers.values())))

@@ -1,0 +1,157 @@
+"""Linear elasticity of one body: forms, stiffness and its solver."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+
+from petsc4py import PETSc
+
+import numpy as np
+import scipy.sparse as sp
+import ufl
+from dolfinx import default_scalar_type, fem
+
+from ..body_mesh import BodyMesh
+from ..compiled import assembled_matrix
+from ..direct_solver import DirectSolver, multiply
+from ..field import without_fixed
+from ..kinematics import Kinematics, section_measure
+from ..solver_choice import AnySolver, SolverChoice
+
+
+@dataclass(frozen=True)
+class ElasticMaterial:
+    """Isotropic material: Young's modulus [Pa], Poisson ratio, thermal expansion [1/K]."""
+
+    young_modulus: float
+    poisson_ratio: float
+    expansion: float = 0.0
+
+
+@dataclass(frozen=True)
+class ElasticForms:
+    """Forms of linear elasticity with thermal strain in one body.
+
+    Attributes
+    ----------
+    body : BodyMesh
+    kinematics : Kinematics
+    lame : tuple of dolfinx.fem.Function
+        λ, μ and thermal modulus times α of the model, constant on each part [Pa, Pa/K].
+    """
+
+    body: BodyMesh
+    kinematics: Kinematics
+    lame: tuple[fem.Function, fem.Function, fem.Function]
+
+    def stress(self, u, rise=None):
+        """Stress of a displacement and a temperature rise, 3 x 3 [Pa]."""
+        λ, μ, m = self.lame
+        ε = self.kinematics.strain(self.body.mesh, u)
+        return self.kinematics.stress(ε, (λ, μ), 0.0 if rise is None else m * rise)
+
+    def virtual_work(self, u, δu, degree: int):
+        """Form of the virtual work of the stress of u on the strain of δu [J].
+
+        `degree` is the polynomial degree for which the quadrature is exact.
+        """
+        mesh, (λ, μ, _) = self.body.mesh, self.lame
+        ε, δε = self.kinematics.strain(mesh, u), self.kinematics.strain(mesh, δu)
+        density = λ * ufl.tr(ε) * ufl.tr(δε) + 2 * μ * ufl.inner(ε, δε)
+        return self.kinematics.integral(mesh, density, section_measure(mesh, degree))
+
+    def thermal_work(self, rise, δu, degree: int):
+        """Form of the work of the thermal stress of a temperature rise on the strain of δu [J]."""
+        mesh = self.body.mesh
+        ε = self.kinematics.strain(mesh, δu)
+        measure = section_measure(mesh, degree)
+        return self.kinematics.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
+
+    def traction_work(self, surface: str, traction: np.ndarray) -> Callable:
+        """Form of the work of a uniform traction (gdim,) [Pa], a function of displacement [J]."""
+        value = np.asarray(traction, dtype=default_scalar_type)
+        return self._work(surface, fem.Constant(self.body.mesh, value))
+
+    def pressure_work(self, surface: str, pressure: float) -> Callable:
+        """Form of the work of a pressure [Pa] along the inward normal; see `traction_work`."""
+        mesh = self.body.mesh
+        constant = fem.Constant(mesh, default_scalar_type(pressure))
+        return self._work(surface, -constant * ufl.FacetNormal(mesh))
+
+    def _work(self, surface: str, traction) -> Callable:
+        mesh, measure = self.body.mesh, self.body.surface_measure(surface)
+        return lambda δu: self.kinematics.integral(mesh, ufl.inner(traction, δu), measure)
+
+    def stiffness(self, space: fem.FunctionSpace) -> PETSc.Mat:
+        """Stiffness without supports in a space. Every rank calls."""
+        u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
+        return assembled_matrix(self.virtual_work(u, δu, space.ufl_element().degree))
+
+    def thermal_load(self, rises: fem.FunctionSpace, space: fem.FunctionSpace, only: str | None):
+        """Matrix of nodal loads of a temperature rise, of the part `only` or of all [N/K]."""
+        rise, δu = ufl.TrialFunction(rises), ufl.TestFunction(space)
+        if only is not None:
+            rise = self.body.per_part({only: 1.0}) * rise
+        return assembled_matrix(self.thermal_work(rise, δu, rises.ufl_element().degree))
+
+    @cached_property
+    def least_compressibility(self) -> float:
+        """Smallest ``1 - 2 ν = μ / (λ + μ)`` in the cells of this rank."""
+        λ, μ, _ = (constant.x.array for constant in self.lame)
+        return float((μ / (λ + μ)).min(initial=1.0))
+
+
+@dataclass(frozen=True)
+class ElasticBody(ElasticForms):
+    """Elasticity problem of one body, with the solver of its equations.
+
+    Attributes
+    ----------
+    space : dolfinx.fem.FunctionSpace
+        Displacement space [m].
+    fixed : ndarray of bool, shape (n_owned,)
+        Mask of values held at zero.
+    support_rows : petsc4py.PETSc.Mat
+        Rows of the stiffness of these values, for the support reactions.
+    matrix : petsc4py.PETSc.Mat
+        Stiffness with the rows and columns of these values eliminated.
+    factor : DirectSolver or MultigridSolver
+        Its solver.
+    choice : SolverChoice
+    """
+
+    space: fem.FunctionSpace
+    fixed: np.ndarray
+    support_rows: PETSc.Mat
+    matrix: PETSc.Mat
+    factor: AnySolver
+    choice: SolverChoice
+
+    def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
+        """Displacements [m] due to nodal loads [N]; owned rows, one or several columns."""
+        return self.factor.solve(without_fixed(loads, self.fixed))
+
+    @contextmanager
+    def solver_of_columns(self) -> Iterator[AnySolver]:
+        """Solver for many columns of loads, zero in the fixed values.
+
+        Where single loads are solved for by multigrid it is a factor that exists meanwhile, if one
+        of this body fits into the memory: a column then costs a hundredth. Every rank calls.
+        """
+        if not self.choice.factorises_columns:
+            yield self.factor
+            return
+        factor = DirectSolver(self.matrix, dim=self.body.mesh.topology.dim)
+        try:
+            yield factor
+        finally:
+            factor.destroy()
+
+    def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """Support reactions [N], owned rows; zero in the free values."""
+        result = np.zeros(len(self.fixed))
+        result[self.fixed] = multiply(self.support_rows, displacement) - loads[self.fixed]
+        return result

@@ -156,6 +156,16 @@ class Conduction:
             factor.iterations = self.factor.iterations  # counted together
         return replace(self, bath=bath, factor=factor)
 
+    def with_factor(self) -> Conduction:
+        """Factorised copy for many columns, where single solutions are found by multigrid.
+
+        The same if the memory does not suffice. Every rank calls.
+        """
+        if not self.choice.factorises_columns:
+            return self
+        known = self.spaces, self.conductivity, self.bath, self.fixed, self.symmetric, self.even
+        return replace(self, factor=conduction_solver(*known, SolverChoice()))
+
     def stored_heat(self, rise: np.ndarray) -> np.ndarray:
         """Nodal stored heat [J], owned rows; its sum over all ranks is that of the bodies."""
         assert self.capacity is not None

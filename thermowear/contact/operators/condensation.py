@@ -163,7 +163,7 @@ def condense_heat(
 
     Every rank calls.
     """
-    comm = conduction.spaces.comm
+    comm, conduction = conduction.spaces.comm, conduction.with_factor()
     first, second = (face_nodes(trace, comm) for trace in traces)
     Φ1, Φ2 = nodal_responses(conduction, (first, second))
     at_nodes = (first, second), (Φ1, Φ2), conduction.symmetric

@@ -185,7 +185,7 @@ class DistortionRows:
     """
 
     def __init__(self, conduction: Conduction, faces: tuple[FaceNodes, FaceNodes], count: int):
-        self._conduction, self._faces = conduction, faces
+        self._conduction, self._faces = conduction.with_factor(), faces
         first, second = (np.zeros((count, face.count)) for face in faces)
         self.distortion = ThermalDistortion((first, second))
 

@@ -10,17 +10,15 @@ facets too. All pairs of facets are treated together: the corners of all polygon
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
-from ...lagrange import lattice
+from ...lagrange import corner_nodes, lattice
 from .common_face import MAX_FACING_COSINE, opposite, opposite_parameters
 from .face import Surface
+from .polygons import TOLERANCE, Polygons, anticlockwise, cut, divided, tidied
 from .projection import within
 
-_TOLERANCE = 1e-9
-"""Relative size of a facet below which corners coincide with each other or with a side."""
 _MAX_EDGE_DEVIATION = 3e-3
 """Largest deviation, relative to a facet, of an edge that is treated as straight."""
 _MARGIN = 0.1
@@ -29,6 +27,8 @@ _REACH = 1.25
 """Radius, relative to that of its image, of the region opposite to a facet that is searched."""
 _EDGE_SEGMENTS = 4
 """Number of segments of a curved edge."""
+_LEAST_STRETCH = 0.1
+"""Smallest Jacobian of the extended map of a facet that is used, relative to that of the facet."""
 _CORNERS = {
     "quadrilateral": np.array([(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float),
     "triangle": np.array([(0, 0), (1, 0), (0, 1)], dtype=float),
@@ -39,47 +39,6 @@ _SIDES = {
     "triangle": np.array([(0, 1, 0), (0, 0, 1), (1, -1, -1)], dtype=float),
 }
 """Distances ``a + b t_0 + c t_1`` from the sides of a facet, positive inside."""
-
-
-class _Polygons(NamedTuple):
-    """Corners of polygons in one list, those of each polygon one after the other.
-
-    Attributes
-    ----------
-    points : ndarray, shape (n, 2)
-    of : ndarray of int, shape (n,)
-        Number of the polygon, ascending.
-    """
-
-    points: np.ndarray
-    of: np.ndarray
-
-    @property
-    def first(self) -> np.ndarray:
-        """Index of the first corner of each polygon."""
-        return np.flatnonzero(np.diff(self.of, prepend=-1))
-
-    @property
-    def before(self) -> np.ndarray:
-        """Index of the corner before each corner."""
-        first, result = self.first, np.arange(len(self.of)) - 1
-        result[first] = np.append(first[1:], len(self.of)) - 1
-        return result
-
-    @property
-    def after(self) -> np.ndarray:
-        """Index of the corner after each corner."""
-        result = np.empty(len(self.of), dtype=np.int64)
-        result[self.before] = np.arange(len(self.of))
-        return result
-
-    def per_corner(self, values: np.ndarray) -> np.ndarray:
-        """Values of the polygons, repeated for each of their corners."""
-        return np.repeat(values, np.diff(np.append(self.first, len(self.of))))
-
-    def only(self, kept: np.ndarray) -> _Polygons:
-        """Polygons of the chosen corners."""
-        return _Polygons(self.points[kept], self.of[kept])
 
 
 @lru_cache(maxsize=1)
@@ -99,8 +58,8 @@ def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.nda
     first, second = _candidates(face_1, face_2)
     polygons, first = _outlines_in(face_1, face_2, first, second)
     for side in range(len(_SIDES[face_1.kind])):
-        polygons = _cut(polygons, _heights(face_1.kind, polygons.points)[:, side])
-    corners, of = _divided(_tidied(polygons), face_1.kind)
+        polygons = cut(polygons, _heights(face_1.kind, polygons.points)[:, side])
+    corners, of = divided(tidied(polygons), face_1.kind)
     return first[of], corners
 
 
@@ -119,12 +78,12 @@ def _candidates(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarra
 
 def _outlines_in(
     face_1: Surface, face_2: Surface, first: np.ndarray, second: np.ndarray
-) -> tuple[_Polygons, np.ndarray]:
+) -> tuple[Polygons, np.ndarray]:
     """Outlines of facets of body 2 in the parameters of facets of body 1, without redundant points.
 
     Returns
     -------
-    polygons : _Polygons
+    polygons : Polygons
         Anticlockwise.
     first : ndarray of int, shape (n_polygons,)
         Facet of body 1.
@@ -132,7 +91,7 @@ def _outlines_in(
     points, normals, softness = (column[second] for column in _outlines(face_2))
     t = face_1.flattened.parameters(first[:, None, None], points)
     facing = -face_1.middle_normals[first][:, None, None]
-    opposed = np.abs(normals - facing).max(axis=(1, 2, 3), initial=0.0) < _TOLERANCE
+    opposed = np.abs(normals - facing).max(axis=(1, 2, 3), initial=0.0) < TOLERANCE
     parallel = face_1.flat[first] & opposed
     near = _heights(face_1.kind, t).max(axis=(1, 2)) > -np.where(parallel, 0.0, 0.5)[:, None]
     near = near.all(axis=1)
@@ -143,8 +102,8 @@ def _outlines_in(
     t[close] = _opposite_within(face_1, on, *(v[near][close] for v in (points, normals, softness)))
     t = _snapped(t, face_1.kind)
     kept = _necessary_points(t)
-    polygons = _Polygons(t[:, :, :-1][kept], np.nonzero(kept)[0])
-    return _anticlockwise(polygons), first
+    polygons = Polygons(t[:, :, :-1][kept], np.nonzero(kept)[0])
+    return anticlockwise(polygons), first
 
 
 def _outlines(face: Surface) -> tuple[np.ndarray, ...]:
@@ -172,9 +131,39 @@ def _on_extended(face: Surface, points, facet: np.ndarray, _) -> tuple[np.ndarra
     """Closest points on given facets extended beyond their edges.
 
     Always from their flat approximation: far out a curved facet may be closest at other places.
+    Facets whose map folds over near them are extended by its linearisation at the closest point.
     """
     start = face.flattened.parameters(facet, points)
-    return facet, within(face, points, facet, start, bounds=(-np.inf, np.inf))
+    t = within(face, points, facet, start, bounds=(-np.inf, np.inf))
+    folds = np.flatnonzero(_folding(face)[facet])
+    if len(folds):
+        points, facet_, start = points[folds], facet[folds], np.clip(start[folds], 0.0, 1.0)
+        on = within(face, points, facet_, start, bounds=(0.0, 1.0))
+        places, tangents = face.points_and_tangents(facet_, on)
+        square = np.einsum("nki,nli->nkl", tangents, tangents)
+        along = np.einsum("nki,ni->nk", tangents, points - places)
+        t[folds] = on + np.linalg.solve(square, along[..., None])[..., 0]
+    return facet, t
+
+
+@lru_cache(maxsize=2)
+def _folding(face: Surface) -> np.ndarray:
+    """Mask of quadrilaterals, given by their corners, that fold over within their size beyond them.
+
+    The Jacobian determinant of a bilinear map is linear in the parameters.
+    """
+    if face.kind == "triangle":
+        return np.zeros(len(face.nodes), dtype=bool)
+    a, b, c, d = face.nodes[:, corner_nodes(face.order, face.kind)].swapaxes(
+        0, 1
+    )  # at (0, 0), (0, 1), (1, 0), (1, 1)
+    ends = np.array([-1.0, 2.0])[:, None, None]
+    u = (1 - ends) * (c - a) + ends * (d - b)  # along the first parameter, by the second
+    v = (1 - ends) * (b - a) + ends * (d - c)
+    normals = np.cross(u[:, None], v[None])
+    outward = face.middle_normals * face.outward[:, None]
+    size = np.einsum("uvni,ni->uvn", normals, outward)
+    return size.min(axis=(0, 1)) < _LEAST_STRETCH * size.mean(axis=(0, 1))
 
 
 def _heights(kind: str, t: np.ndarray) -> np.ndarray:
@@ -185,10 +174,10 @@ def _heights(kind: str, t: np.ndarray) -> np.ndarray:
 def _snapped(t: np.ndarray, kind: str) -> np.ndarray:
     """Parameters (..., 2) moved to sides of the facet that they are on up to rounding."""
     for side in (0.0, 1.0):
-        t = np.where(np.abs(t - side) < _TOLERANCE, side, t)
+        t = np.where(np.abs(t - side) < TOLERANCE, side, t)
     if kind == "triangle":
         beyond = t.sum(axis=-1, keepdims=True) - 1.0
-        t = np.where((np.abs(beyond) < _TOLERANCE) & (t > 0.5), t - beyond, t)
+        t = np.where((np.abs(beyond) < TOLERANCE) & (t > 0.5), t - beyond, t)
     return t
 
 
@@ -207,83 +196,8 @@ def _necessary_points(edges: np.ndarray) -> np.ndarray:
     off = along[..., 0] * from_start[..., 1] - along[..., 1] * from_start[..., 0]
     k = np.arange(steps + 1)
     inside = (k > first[..., None]) & (k < last[..., None])
-    length = np.maximum(np.linalg.norm(along, axis=-1), _TOLERANCE)
+    length = np.maximum(np.linalg.norm(along, axis=-1), TOLERANCE)
     bent = np.max(inside * np.abs(off) / length, axis=-1) > _MAX_EDGE_DEVIATION
     crossed = enters.any(axis=-1)
     ends = crossed[..., None] & ((k == first[..., None]) | (k == last[..., None]))
     return ((k == 0) | ends | (crossed & bent)[..., None] & inside)[..., :-1]
-
-
-def _anticlockwise(polygons: _Polygons) -> _Polygons:
-    """Polygons without orientation reversed where they run clockwise."""
-    p, following = polygons.points, polygons.points[polygons.after]
-    area = np.bincount(polygons.of, p[:, 0] * following[:, 1] - p[:, 1] * following[:, 0])
-    first = polygons.first
-    last = np.append(first[1:], len(p)) - 1
-    every = np.arange(len(p))
-    mirrored = polygons.per_corner(first + last) - every
-    return polygons._replace(points=p[np.where(area[polygons.of] > 0, every, mirrored)])
-
-
-def _cut(polygons: _Polygons, height: np.ndarray) -> _Polygons:
-    """Parts of polygons where the interpolated height of their corners is nonnegative."""
-    before = polygons.before
-    lower = height[before]
-    crossed = ((height > 0) & (lower < 0)) | ((height < 0) & (lower > 0))
-    part = np.divide(lower, lower - height, out=np.zeros_like(height), where=crossed)[:, None]
-    start = polygons.points[before]
-    points = np.stack([start + part * (polygons.points - start), polygons.points], axis=1)
-    kept = np.column_stack([crossed, height >= 0])
-    return _Polygons(points[kept], np.repeat(polygons.of, 2).reshape(-1, 2)[kept])
-
-
-def _tidied(polygons: _Polygons) -> _Polygons:
-    """Polygons without redundant corners; those of less than three corners vanish."""
-    while len(polygons.of):
-        turn, first = np.abs(_turns(polygons)), polygons.first
-        least = np.minimum.reduceat(turn, first)
-        count = np.diff(np.append(first, len(turn)))
-        small = polygons.per_corner(count) < 3
-        flattest = polygons.per_corner(np.where(least > _TOLERANCE, -1.0, least)) == turn
-        candidates = np.flatnonzero(flattest)
-        removed = candidates[np.unique(polygons.of[candidates], return_index=True)[1]]
-        small[removed] = True
-        if not small.any():
-            break
-        polygons = polygons.only(~small)
-    return polygons
-
-
-def _turns(polygons: _Polygons) -> np.ndarray:
-    """Distance of each corner from the line of its neighbours, positive for a left turn."""
-    p = polygons.points
-    before, after = p - p[polygons.before], p[polygons.after] - p
-    across = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    longer = np.maximum(np.hypot(*before.T), np.hypot(*after.T))
-    return across / np.maximum(longer, _TOLERANCE)
-
-
-def _divided(polygons: _Polygons, kind: str) -> tuple[np.ndarray, np.ndarray]:
-    """Parts (n, 4, 2) of polygons, and the polygon of each.
-
-    Convex polygons are divided from their first corner, into quadrilaterals in those, into
-    triangles in triangles; others into triangles about their mean.
-    """
-    p, of, first = polygons.points, polygons.of, polygons.first
-    if not len(of):
-        return np.empty((0, 4, 2)), of
-    count = np.diff(np.append(first, len(of)))
-    convex = np.minimum.reduceat(_turns(polygons), first) >= 0
-    step = 1 if kind == "triangle" else 2
-    parts = np.where(convex, (count - 3) // step + 1, 0)
-    origin, sides = np.repeat(first, parts), np.repeat(count, parts)
-    k = 1 + step * (np.arange(len(origin)) - np.repeat(np.cumsum(parts) - parts, parts))
-    fan = np.stack([0 * k, k, k + 1, (k + step) % sides], axis=1)
-    bent = np.flatnonzero(~polygons.per_corner(convex))
-    mean = [np.bincount(of, column)[of] / np.bincount(of)[of] for column in p.T]
-    following = p[polygons.after]
-    about = np.stack([np.column_stack(mean), p, following, following], axis=1)[bent]
-    corners = np.concatenate([p[origin[:, None] + fan], about])
-    of_part = np.concatenate([of[origin], of[bent]])
-    order = np.argsort(of_part, kind="stable")
-    return corners[order], of_part[order]

@@ -3,6 +3,8 @@
 import json
 from dataclasses import replace
 
+from mpi4py import MPI
+
 import meshio
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from thermowear.geometry.mesh.mixed import joined
 from thermowear.geometry.mesh.nodes import boundary
 from thermowear.geometry.meshing.cells import Sheet, grid, level, mesh_body, tagged_bodies
 from thermowear.geometry.reading.export import write_mesh
+from thermowear.serialise import pack
 from thermowear.verification.cases.patch_in_space import (
     HEIGHTS,
     MODULI,
@@ -187,3 +190,39 @@ def test_sections(tmp_path, triangles, method):
     assert result.summary["approach_m"] == pytest.approx(expected, rel=1e-10)
     shapes = [fields.pieces.shape[1] for fields in result.fields.blocks]
     assert shapes == [3 if of_body else 4 for of_body in triangles]
+
+
+def worn(tmp_path, body):
+    """Case of a body that wears by some percent of its height, tetrahedra on hexahedra."""
+    made = PatchInSpace(columns=(2, 2), orders=(1, 1), tetrahedra=(True, False)).build(None)
+    write_mesh(made, tmp_path / "mesh.msh")
+    case = tables_of({"type": "file", "path": str(tmp_path / "mesh.msh")} | NAMES)
+    return case | {
+        "mesh": {"degree": 1},
+        "load": {"force": "10 kN"},
+        "motion": {"velocity": "0.1 m/s"},
+        "wear": {body: {"coefficient": "1e-6 1/MPa", "per": "pressure"}, "update": 0.02},
+        "contact": {"friction": 0.0},
+        "analysis": {"type": "transient", "end_time": "1500 s"},
+    }
+
+
+@pytest.mark.parametrize(("body", "number"), [("upper", 1), ("lower", 2)])
+def test_one_block_follows_its_wear(tmp_path, body, number):
+    """requirement: geometry updates of tetrahedra or hexahedra; the volume is the worn one."""
+    case = worn(tmp_path, body)
+    case["holder"] = {"free": ["z"]}
+    summary = tw.run(tw.load(case)).summary
+    assert summary["geometry_updates"] > 0
+    expected = 1e-12 * 1e4 * 0.1 * 1500  # k F s: no part of the face leaves the contact
+    for key in ("wear", "geometry"):
+        found = summary[f"{key}_volume_{number}_m3"]
+        assert found == pytest.approx(expected, rel=1e-6, abs=0.0)
+    assert summary[f"geometry_volume_{3 - number}_m3"] == 0.0
+
+
+def test_a_mixed_mesh_is_saved_and_restored():
+    """requirement: worn meshes in checkpoints."""
+    made = PatchInSpace(columns=(2, 3), orders=(1, 2), tetrahedra=(True, False)).build(None)
+    again = pack(MPI.COMM_SELF, made).state(0)
+    assert again.checksum() == made.checksum()

@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...lagrange import lattice
+from ...lagrange import corner_nodes, lattice
 from .common_face import MAX_FACING_COSINE, opposite, opposite_parameters
 from .face import Surface
 from .polygons import TOLERANCE, Polygons, anticlockwise, cut, divided, tidied
@@ -28,6 +28,8 @@ _REACH = 1.25
 """Radius, relative to that of its image, of the region opposite to a facet that is searched."""
 _EDGE_SEGMENTS = 4
 """Number of segments of a curved edge."""
+_LEAST_STRETCH = 0.1
+"""Smallest Jacobian of the extended map of a facet that is used, relative to that of the facet."""
 _CORNERS = {
     "quadrilateral": np.array([(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float),
     "triangle": np.array([(0, 0), (1, 0), (0, 1)], dtype=float),
@@ -171,9 +173,39 @@ def _on_extended(face: Surface, points, facet: np.ndarray, _) -> tuple[np.ndarra
     """Closest points on given facets extended beyond their edges.
 
     Always from their flat approximation: far out a curved facet may be closest at other places.
+    Facets whose map folds over near them are extended by its linearisation at the closest point.
     """
     start = face.flattened.parameters(facet, points)
-    return facet, within(face, points, facet, start, bounds=(-np.inf, np.inf))
+    t = within(face, points, facet, start, bounds=(-np.inf, np.inf))
+    folds = np.flatnonzero(_folding(face)[facet])
+    if len(folds):
+        points, facet_, start = points[folds], facet[folds], np.clip(start[folds], 0.0, 1.0)
+        on = within(face, points, facet_, start, bounds=(0.0, 1.0))
+        places, tangents = face.points_and_tangents(facet_, on)
+        square = np.einsum("nki,nli->nkl", tangents, tangents)
+        along = np.einsum("nki,ni->nk", tangents, points - places)
+        t[folds] = on + np.linalg.solve(square, along[..., None])[..., 0]
+    return facet, t
+
+
+@lru_cache(maxsize=2)
+def _folding(face: Surface) -> np.ndarray:
+    """Mask of quadrilaterals, given by their corners, that fold over within their size beyond them.
+
+    The Jacobian determinant of a bilinear map is linear in the parameters.
+    """
+    if face.kind == "triangle":
+        return np.zeros(len(face.nodes), dtype=bool)
+    a, b, c, d = face.nodes[:, corner_nodes(face.order, face.kind)].swapaxes(
+        0, 1
+    )  # at (0, 0), (0, 1), (1, 0), (1, 1)
+    ends = np.array([-1.0, 2.0])[:, None, None]
+    u = (1 - ends) * (c - a) + ends * (d - b)  # along the first parameter, by the second
+    v = (1 - ends) * (b - a) + ends * (d - c)
+    normals = np.cross(u[:, None], v[None])
+    outward = face.middle_normals * face.outward[:, None]
+    size = np.einsum("uvni,ni->uvn", normals, outward)
+    return size.min(axis=(0, 1)) < _LEAST_STRETCH * size.mean(axis=(0, 1))
 
 
 def _heights(kind: str, t: np.ndarray) -> np.ndarray:

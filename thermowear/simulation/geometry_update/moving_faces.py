@@ -99,7 +99,7 @@ class MovingFaces:
 def _unworn(system: System, bodies: list[int]) -> WornGeometry:
     """Geometry before its first update."""
     pairing, comm = system.pairing, system.comm
-    mesh, paths = on_root(comm, lambda: _node_paths(system, bodies))
+    mesh, paths = on_root(comm, lambda: _node_paths(system))
     directions = tuple(path.directions for path in paths)
     zeros = np.zeros(3)
     return WornGeometry(
@@ -154,40 +154,19 @@ def worst_cell(mesh: AnyMesh) -> float:
     return min(float(scaled_jacobians(block).min()) for block in mesh.blocks)
 
 
-def _node_paths(system: System, bodies: list[int]) -> tuple[AnyMesh, list[Paths]]:
+def _node_paths(system: System) -> tuple[AnyMesh, list[Paths]]:
     """Unworn mesh, and the paths of the nodes of its faces."""
     mesh = system.model.meshes.mesh(system.zone)
     paths = []
     for index, side in enumerate(system.pairing.sides):
-        normals = node_normals(side.face)
-        if index not in bodies and not _can_move(system, mesh, index):
-            paths.append(Paths(normals, np.zeros(len(normals), dtype=bool)))
-            continue
         body = movable_body(system, mesh, index)
-        paths.append(Paths(*body.motion_paths(normals)))
+        paths.append(Paths(*body.motion_paths(node_normals(side.face))))
     return mesh, paths
 
 
-def _can_move(system: System, mesh: AnyMesh, index: int) -> bool:
-    """True for bodies of a section, and of hexahedra."""
-    return block_of(mesh, *system.model.bodies[index].parts).cell_type != "tetrahedron"
-
-
 def movable_body(system: System, mesh: AnyMesh, index: int) -> MovableBody | MovableSolid:
-    """Movable body of the mesh of a system, by its index, in its block of the mesh.
-
-    Raises
-    ------
-    ComputationError
-        If it has tetrahedra.
-    """
+    """Movable body of the mesh of a system, by its index, in its block of the mesh."""
     face, body = system.pairing.sides[index].face, system.model.bodies[index]
-    if not _can_move(system, mesh, index):
-        raise ComputationError(
-            f"geometry update: the wear of {body.name!r} has reached the limit of wear.update, and "
-            "meshes of tetrahedra cannot be moved; mesh this body with hexahedra, or keep the wear "
-            'in the gap: wear.update = "never"'
-        )
     block = block_of(mesh, *body.parts)
     if isinstance(face, Surface):
         return MovableSolid(block, body.parts, nodes_of(face), serial_extension)

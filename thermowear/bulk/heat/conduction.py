@@ -163,8 +163,9 @@ class Conduction:
         """
         if not self.choice.factorises_columns:
             return self
-        known = self.spaces, self.conductivity, self.bath, self.fixed, self.symmetric, self.even
-        return replace(self, factor=conduction_solver(*known, SolverChoice()))
+        known = self.spaces, self.conductivity, self.bath, self.fixed, self.advection, self.even
+        factor = conduction_solver(*known, SolverChoice(), self.symmetric)
+        return replace(self, factor=factor)
 
     def stored_heat(self, rise: np.ndarray) -> np.ndarray:
         """Nodal stored heat [J], owned rows; its sum over all ranks is that of the bodies."""

@@ -121,7 +121,8 @@ def _outlines_in(
     alike = same[first] == second
     near = near.all(axis=1) | alike
     first, second, t, parallel, alike = (v[near] for v in (first, second, t, parallel, alike))
-    t[alike] = _own_outlines(face_1, face_2, first[alike], second[alike])
+    if alike.any():  # of one kind
+        t[alike] = _own_outlines(face_1, face_2, first[alike], second[alike])
     close = np.all((t > -1) & (t < 2), axis=-1)  # points farther away need no accuracy
     close[parallel | alike] = False
     on = np.broadcast_to(first[:, None, None], close.shape)[close]

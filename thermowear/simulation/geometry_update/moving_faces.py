@@ -20,7 +20,6 @@ from ...contact.wear.worn_face import (
     node_normals,
     nodes_of,
 )
-from ...errors import ComputationError
 from ...geometry.mesh.mixed import AnyMesh, block_of
 from ...geometry.mesh.tagged import quality, scaled_jacobians
 from ...geometry.moving.moved import MovableBody

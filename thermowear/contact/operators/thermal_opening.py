@@ -24,16 +24,17 @@ from .heat_exchange import CoupledDistortion, HeatExchange, opened_by
 from .traces import transpose_product
 
 _COLUMNS = {2: 32, 3: 128}
-"""Right-hand sides per solution, by dimension; limited by the caches, or the memory."""
-
-
+"""Right-hand sides per solution, by dimension; limited by the caches."""
+_BLOCK_MEMORY, _LEAST = 3e8, 32
+"""Memory of the solutions of a block [bytes], unless it has the least number of columns."""
 _STORED = 0.05
 """Part of the available memory that the response of all temperatures may take."""
 
 
-def blocks(count: int, dim: int) -> Iterator[slice]:
-    """Ranges of columns that are solved for together, in a mesh of dimension `dim`."""
-    size = _COLUMNS[dim]
+def blocks(count: int, dim: int, rows: int = 0) -> Iterator[slice]:
+    """Ranges of columns of a number of rows that are solved for together, in a dimension `dim`."""
+    fitting = int(_BLOCK_MEMORY / (8 * max(rows, 1)))
+    size = min(_COLUMNS[dim], max(fitting, _LEAST))
     return (slice(start, min(start + size, count)) for start in range(0, count, size))
 
 
@@ -43,7 +44,7 @@ def elastic_columns(elastic: Elasticity, loads: sp.csc_matrix) -> Iterator[tuple
     A range may occur several times; its displacements, of one body each time, are to be added.
     """
     for solve in elastic.solvers_of_columns():
-        for columns in blocks(loads.shape[1], elastic.bodies.dim):
+        for columns in blocks(loads.shape[1], elastic.bodies.dim, elastic.spaces.total):
             yield columns, solve(loads[:, columns].tocsr())
 
 

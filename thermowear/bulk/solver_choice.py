@@ -79,6 +79,14 @@ class SolverChoice:
         """True if a body is factorised for the time of its condensation alone."""
         return self.iterative and self.largest_factor <= _PART_MEANWHILE * self.available
 
+    @property
+    def factorises_heat_columns(self) -> bool:
+        """True if conduction is factorised for the time of its condensation alone.
+
+        A scalar factor has a ninth of the entries of a vector-valued one on the same nodes.
+        """
+        return self.iterative and self.factor_memory / 9 <= _PART_MEANWHILE * self.available
+
     def note(self) -> str | None:
         """Line for the console; None for small bodies and sections, which are factorised."""
         if not self.iterative and not self.unknowns >= min(_MANY.values()):

@@ -161,7 +161,7 @@ class Conduction:
 
         The same if the memory does not suffice. Every rank calls.
         """
-        if not self.choice.factorises_columns:
+        if not self.choice.factorises_heat_columns:
             return self
         known = self.spaces, self.conductivity, self.bath, self.fixed, self.advection, self.even
         factor = conduction_solver(*known, SolverChoice(), self.symmetric)

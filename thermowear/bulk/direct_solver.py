@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ctypes
+
 from petsc4py import PETSc
 
 import numpy as np
@@ -74,8 +76,10 @@ class DirectSolver:
             raise ComputationError(f"a matrix cannot be factorised (MUMPS error {code}): {reason}")
 
     def destroy(self) -> None:
-        """Free the memory of the factor."""
+        """Free the memory of the factor, also where others still refer to this solver."""
+        self._factored.destroy()
         self._solver.destroy()
+        _return_freed_memory()
 
     @property
     def negative_pivots(self) -> int:
@@ -130,6 +134,13 @@ class DirectSolver:
             columns.shape[::-1], csr=(*indices, columns.data), comm=self._comm
         )
         return PETSc.Mat().createTranspose(transposed)
+
+
+def _return_freed_memory() -> None:
+    """Return freed memory to the system: the C library keeps the small blocks of a factor."""
+    trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
+    if trim is not None:  # glibc
+        trim(0)
 
 
 def multiply(matrix: PETSc.Mat, values: np.ndarray) -> np.ndarray:

@@ -11,12 +11,14 @@ from thermowear.contact.operators.traces import gap_trace
 from thermowear.contact.search.pairing import pair
 from thermowear.laws.motions import translation
 
-from .solids import elastic_bodies, gathered, two_solids
+from .solids import bent, elastic_bodies, gathered, two_solids
 
 
 def compliance(choice):
-    bodies, faces = gathered(two_solids(((2, 2, 2), (3, 2, 2)), cell_type="tetrahedron"))
-    elastic = elastic_bodies(bodies, 2, 0.3, choice=choice)
+    divisions = (2, 2, 2), (2, 2, 2)
+    bodies, faces = gathered(two_solids(divisions, 2, (bent, bent), cell_type="tetrahedron"))
+    guided = "upper_face", "lower_face"  # loads along y on the bent faces count for nothing
+    elastic = elastic_bodies(bodies, 2, 0.3, choice=choice, rollers=guided)
     pairing = pair(*faces, Spatial(), 4)
     trace, basis = gap_trace(elastic.spaces, pairing), pressure_basis(pairing, 1)
     holder = hold(pairing, pairing.normals, [RigidMode(translation((0.0, 0.0, -1.0)), load=1.0)])

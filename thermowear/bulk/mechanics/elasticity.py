@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 
@@ -128,10 +128,11 @@ def elasticity(
     kinematics: Kinematics,
     degree: int,
     materials: dict[str, ElasticMaterial],
-    clamped: list[str],
+    clamped: Sequence[str],
     symmetric: tuple[str, ...] = (),
     rollers: tuple[str, ...] = (),
     choice: SolverChoice | None = None,
+    mid_plane: tuple[str, ...] = (),
 ) -> Elasticity:
     """Assemble the stiffness and set up its solver, body by body. Every rank calls.
 
@@ -143,17 +144,19 @@ def elasticity(
         Polynomial degree of the displacement.
     materials : dict of str to ElasticMaterial
         Materials by part.
-    clamped : list of str
-        Surfaces fixed in all directions; every body needs one.
+    clamped : sequence of str
+        Surfaces fixed in all directions.
     symmetric : tuple of str
         Surfaces on a plane of symmetry x = const.: the first displacement component vanishes.
     rollers : tuple of str
         Surfaces whose second displacement component vanishes.
     choice : SolverChoice, optional
         Direct by default.
+    mid_plane : tuple of str
+        Surfaces in space whose third displacement component vanishes.
     """
     spaces = lagrange_spaces(bodies, degree, bodies.dim)
-    guided = {0: symmetric, 1: rollers}
+    guided = symmetric, rollers, mid_plane
     each = []
     for body, space in zip(bodies.each, spaces.each, strict=True):
         forms = ElasticForms(body, kinematics, _lame(body, kinematics, materials))
@@ -214,8 +217,8 @@ def fixed_values(body: BodyMesh, kinematics: Kinematics, space, clamped, guided)
         Vector-valued space.
     clamped : sequence of str
         Surfaces fixed in all directions.
-    guided : dict of int to sequence of str
-        Surfaces by the component that they fix.
+    guided : tuple of sequences of str
+        Surfaces that fix the first, the second and the third component.
     """
     mesh = body.mesh
     tdim = mesh.topology.dim
@@ -223,7 +226,7 @@ def fixed_values(body: BodyMesh, kinematics: Kinematics, space, clamped, guided)
     held = np.zeros(owned(space), dtype=bool)
     for component in range(mesh.geometry.dim):
         facets = [body.facets(surface) for surface in clamped]
-        facets += [body.facets(surface) for surface in guided.get(component, ())]
+        facets += [body.facets(surface) for surface in guided[component]]
         if component == 0:
             facets.append(dmesh.locate_entities_boundary(mesh, tdim - 1, kinematics.on_axis))
         nodes = fem.locate_dofs_topological(

@@ -14,8 +14,10 @@ from .solid_checks import CORNERS, at, node_links
 
 _FLUSH = 0.95
 """Least cosine of the angle between facets on both sides of the rim of a hole in one surface."""
-_PLANES = {"symmetry": 0, "rollers": 1}
+_PLANES = {"symmetry": 0, "rollers": 1, "mid_plane": 2}
 """Keys of surfaces on planes, and the coordinate that is constant there."""
+_CUTS_BOTH = ("symmetry", "rollers")
+"""Keys of planes that cut both bodies."""
 
 
 def check_solid_mesh(mesh: AnyMesh, geometry: Geometry) -> None:
@@ -35,8 +37,10 @@ def check_solid_mesh(mesh: AnyMesh, geometry: Geometry) -> None:
     for body, surface in zip(geometry.bodies, (geometry.held, geometry.fixed), strict=True):
         _check_pieces_held(block_of(mesh, body), body, surface)
     for key, axis in _PLANES.items():
+        _check_planes(mesh, key, getattr(geometry, key), axis)
+    for key in _CUTS_BOTH:
         if getattr(geometry, key):
-            _check_planes(mesh, key, getattr(geometry, key), axis)
+            _check_both_cut(mesh, key, getattr(geometry, key))
 
 
 def facet_corners(mesh: TaggedMesh, facets: np.ndarray) -> np.ndarray:
@@ -143,9 +147,9 @@ def _check_pieces_held(mesh: TaggedMesh, body: str, surface: str) -> None:
 
 
 def _check_planes(mesh: AnyMesh, key: str, names: tuple[str, ...], axis: int) -> None:
-    """Check that surfaces lie in planes x or y = const, with the bodies on one side of each."""
+    """Check that surfaces lie in planes x, y or z = const, with the bodies on one side of each."""
     points = mesh.points
-    letter, size = "xy"[axis], np.ptp(points, axis=0).max()
+    letter, size = "xyz"[axis], np.ptp(points, axis=0).max()
     for name in names:
         level = on_surface(mesh, name)[:, axis]
         if np.ptp(level) > LEVEL * size:
@@ -159,6 +163,10 @@ def _check_planes(mesh: AnyMesh, key: str, names: tuple[str, ...], axis: int) ->
                 f"geometry.{key}: the bodies lie on both sides of the plane of {name!r}, "
                 f"{letter} = {level.mean():.6g} m"
             )
+
+
+def _check_both_cut(mesh: AnyMesh, key: str, names: tuple[str, ...]) -> None:
+    """Check that each body has a surface on one of the planes of a key."""
     for body in mesh.bodies:
         if not has_any(mesh, body, names):
             raise CaseError(

@@ -55,6 +55,7 @@ def test_the_running_in_of_a_case(overrides, until):
     ("name", "overrides", "analysis"),
     [
         ("rectangular-punch", ("mesh.degree=2", "mesh.elements=3"), "steady"),
+        ("disk-sector", ("mesh.degree=2", "mesh.elements=3", "geometry.hub=true"), "steady"),
         ("punch-on-strip-tilting", ("mesh.degree=2", "load.moment=0.5 N m"), "steady"),
         ("stacked-blocks", ("mesh.degree=2",), "steady"),
         ("stacked-blocks", ("mesh.degree=2", "analysis.type=initial"), "initial"),

@@ -86,6 +86,21 @@ def test_all_analyses(name, overrides, analysis):
         )
 
 
+def test_other_supports_of_the_same_mesh():
+    """requirement: a body with other supports is not solved with the factors of the first one."""
+    model, face, _ = python_model("disk-sector", "mesh.elements=3", "geometry.hub=true")
+    disk = face.other.body
+    before = model.steady().result.interface.shape
+    bent = replace(disk, mid_plane=())
+    (motion,) = model.motions.values()
+    faces = [replace(face, other=bent.surface(face.other.tag))]
+    after = replace(model, interfaces=faces, motions={bent: motion})
+    found = after.steady().result.interface.shape
+    anew = replace(after, _shared={}).steady().result.interface.shape
+    np.testing.assert_allclose(found, anew, rtol=0.0, atol=1e-12 * np.ptp(anew))
+    assert np.ptp(found) > 1.1 * np.ptp(before)
+
+
 def test_only_the_relative_motion_matters():
     """requirement: body 2 moving one way is body 1 moving the other; friction tells them apart."""
     model, face, _ = python_model("punch-on-strip-tilting", "mesh.degree=2")

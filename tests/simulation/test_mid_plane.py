@@ -93,6 +93,8 @@ def test_pressed_and_heated_blocks(tmp_path, cell_type):
 def test_a_loose_body_is_refused(tmp_path, planes, free, solver):
     """requirement: one line in place of a singular matrix, for every solver."""
     case = tw.load(blocks_on_planes(tmp_path, "tetrahedron", **planes), [f"mesh.solver={solver}"])
+    with pytest.raises(tw.CaseError, match=f"^Body {free}"):
+        case.tagged_mesh()
     with pytest.raises(tw.CaseError, match=f"^Body {free} one of its surfaces, or add planes"):
         tw.run(case)
 

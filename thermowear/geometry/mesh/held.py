@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...errors import CaseError
 from .mixed import AnyMesh, block_of
 from .tagged import TaggedMesh
 
@@ -56,6 +57,22 @@ def free_motions(
     # components of the projection of each motion on the free ones
     share = np.einsum("ij,ij->i", free, free)
     return [name for name, part in zip(_NAMES[dim], share, strict=True) if part > _NONE]
+
+
+def check_held(body: str, free: Sequence[str]) -> None:
+    """Reject a body with free rigid motions: its stiffness would be singular.
+
+    Raises
+    ------
+    CaseError
+    """
+    if free:
+        *others, last = free
+        motions = f"{', '.join(others)} and {last}" if others else last
+        raise CaseError(
+            f"Body {body!r}: its supports leave it free to move {motions}; clamp one of its "
+            "surfaces, or add planes of symmetry"
+        )
 
 
 def _nodes(block: TaggedMesh, own: np.ndarray, surfaces: Sequence[str]) -> np.ndarray:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...case.tables.geometry import Geometry
 from ...errors import CaseError, note
+from ..mesh.held import check_held, free_motions
 from ..mesh.mixed import AnyMesh, block_of, block_with
 from ..mesh.nodes import boundary, components, meeting, numbered
 from ..mesh.tagged import TaggedMesh
@@ -26,8 +27,8 @@ def check_solid_mesh(mesh: AnyMesh, geometry: Geometry) -> None:
     Raises
     ------
     CaseError
-        If surfaces share facets, a contact face branches, a piece of a body is not held, or a
-        surface of symmetry or on rollers does not lie in a plane.
+        If surfaces share facets, a contact face branches, a piece of a body is not held, a surface
+        of symmetry or on rollers does not lie in a plane, or a body is free to move.
     """
     mesh = whole_bodies(mesh, geometry)
     for block in mesh.blocks:
@@ -38,6 +39,7 @@ def check_solid_mesh(mesh: AnyMesh, geometry: Geometry) -> None:
         _check_pieces_held(block_of(mesh, body), body, surface)
     for key, axis in _PLANES.items():
         _check_planes(mesh, key, getattr(geometry, key), axis)
+    _check_supports(mesh, geometry)
     for key in _CUTS_BOTH:
         if getattr(geometry, key):
             _check_both_cut(mesh, key, getattr(geometry, key))
@@ -163,6 +165,15 @@ def _check_planes(mesh: AnyMesh, key: str, names: tuple[str, ...], axis: int) ->
                 f"geometry.{key}: the bodies lie on both sides of the plane of {name!r}, "
                 f"{letter} = {level.mean():.6g} m"
             )
+
+
+def _check_supports(mesh: AnyMesh, geometry: Geometry) -> None:
+    """Reject a body that its supports leave free to move."""
+    guided = [getattr(geometry, key) for key in _PLANES]
+    smooth = {name for names in guided for name in names}
+    clamped = [name for name in (geometry.held, geometry.fixed) if name not in smooth]
+    for body in geometry.bodies:
+        check_held(body, free_motions(mesh, [body], clamped, guided))
 
 
 def _check_both_cut(mesh: AnyMesh, key: str, names: tuple[str, ...]) -> None:

@@ -16,8 +16,7 @@ from ...contact.operators.rigid_motion import RigidMode, hold, sliding
 from ...contact.operators.traces import gap_trace
 from ...contact.search.face import gather_faces
 from ...contact.search.pairing import Pairing
-from ...errors import CaseError
-from ...geometry.mesh.held import free_motions
+from ...geometry.mesh.held import check_held, free_motions
 from ...geometry.mesh.mixed import AnyMesh
 from ...model.model import Model, Zone
 from ...parallel import on_root
@@ -139,19 +138,13 @@ def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) ->
 
 
 def _check_held(model: Model, mesh: AnyMesh) -> None:
-    """Reject a body that its supports leave a rigid motion: its stiffness would be singular."""
+    """Reject a body that its supports leave free to move."""
     clamped, *guided = supports(model)
     for body in model.bodies:
         free = free_motions(mesh, body.parts, clamped, guided)
         if model.kinematics == "axisymmetric":
             free = ["along z" for name in free if name == "along y"]
-        if free:
-            *others, last = free
-            motions = f"{', '.join(others)} and {last}" if others else last
-            raise CaseError(
-                f"Body {body.name!r}: its supports leave it free to move {motions}; clamp one of "
-                "its surfaces, or add planes of symmetry"
-            )
+        check_held(body.name, free)
 
 
 def _paired(

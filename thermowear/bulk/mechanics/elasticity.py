@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 
 from petsc4py import PETSc
 
@@ -17,10 +17,10 @@ from ..bodies import Bodies
 from ..body_mesh import BodyMesh
 from ..compiled import surface_area
 from ..direct_solver import eliminate
-from ..field import owned, without_fixed
+from ..field import owned
 from ..kinematics import Kinematics
-from ..solver_choice import AnySolver, SolverChoice, linear_solver
-from ..spaces import Spaces, block_diagonal, lagrange_spaces
+from ..solver_choice import SolverChoice, linear_solver
+from ..spaces import BodyMatrices, Spaces, block_diagonal, lagrange_spaces
 from .elastic_body import ElasticBody, ElasticForms, ElasticMaterial
 
 
@@ -76,26 +76,6 @@ class Elasticity:
             found[...] = body.solve(load)
         return result
 
-    def solvers_of_columns(self) -> Iterator[Callable]:
-        """Functions like `solve` for many columns; their results add up to the displacements.
-
-        Bodies that are factorised for this purpose alone are solved by functions of their own, each
-        valid until the next one is asked for. Every rank calls.
-        """
-        if not any(body.choice.factorises_columns for body in self.each):
-            yield self.solve
-            return
-        for index, body in enumerate(self.each):
-            with body.solver_of_columns() as factor:
-                yield partial(self._solved_alone, index, factor)
-
-    def _solved_alone(self, index: int, factor: AnySolver, loads: sp.csr_matrix) -> np.ndarray:
-        """Displacements of one body, zero in the others."""
-        result = np.zeros(loads.shape, order="F")
-        own, found = (self.spaces.split(values)[index] for values in (loads, result))
-        found[...] = factor.solve(without_fixed(own, self.each[index].fixed))
-        return result
-
     def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Support reactions [N], owned rows; zero in the free values."""
         split = self.spaces.split
@@ -114,13 +94,14 @@ class Elasticity:
         """Coordinates of the owned nodes, shape (n_owned / gdim, gdim) [m]."""
         return self.spaces.nodes()
 
-    def thermal_load(self, temperatures: Spaces, only: str | None = None) -> PETSc.Mat:
-        """Matrix of nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N/K].
+    def thermal_load(self, temperatures: Spaces, only: str | None = None) -> BodyMatrices:
+        """Matrices of nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N/K].
 
         Over all bodies, or over the part `only`.
         """
         parts = zip(self.each, temperatures.each, strict=True)
-        return block_diagonal([b.thermal_load(rises, b.space, only) for b, rises in parts])
+        each = tuple(body.thermal_load(rises, body.space, only) for body, rises in parts)
+        return BodyMatrices(each, temperatures)
 
 
 def elasticity(

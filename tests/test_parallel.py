@@ -181,3 +181,12 @@ def test_a_failed_computation_ends_all_ranks(tmp_path):
     assert done.returncode == 2
     assert done.stderr.count("instability") == 1
     assert json.loads((tmp_path / "out" / "run.json").read_text())["status"] == "failed"
+
+
+def test_rows_are_shared_by_the_ranks():
+    """requirement: each rank computes some rows, all have all of them, and an error on one rank is
+    raised on all.
+    """
+    done = thermowear(2, module="tests.rows_on_ranks")
+    assert done.returncode == 0, done.stderr
+    assert sorted(done.stdout.splitlines()) == [f"rank {k}: in the last row" for k in range(2)]

@@ -8,6 +8,9 @@ from typing import Any
 
 import numpy as np
 
+_MANY_ROWS = 1000
+"""Least number of rows of a rank for which sharing the work pays."""
+
 
 def sum_over_ranks(comm, values):
     """Sum arrays or numbers over all ranks; the result is bitwise identical on every rank."""
@@ -40,3 +43,32 @@ def on_root(comm, action: Callable[[], Any], share: bool = True) -> Any:
     if error is not None:
         raise error
     return received if share else result
+
+
+def rows_over_ranks(
+    comm, count: int, compute: Callable[[slice], tuple[np.ndarray, ...]]
+) -> tuple[np.ndarray, ...]:
+    """Compute arrays by rows, if many a range of them on each rank; whole on every rank.
+
+    Parameters
+    ----------
+    comm : mpi4py.MPI.Comm or None
+        Every rank calls; None: this process alone.
+    count : int
+        Number of rows.
+    compute : callable
+        Rows in a range. Errors are raised on every rank.
+    """
+    if comm is None or count < _MANY_ROWS * comm.size or comm.size == 1:
+        return compute(slice(0, count))
+    ends = np.linspace(0, count, comm.size + 1).astype(int)
+    rows: tuple[np.ndarray, ...] = ()
+    error = None
+    try:
+        rows = compute(slice(ends[comm.rank], ends[comm.rank + 1]))
+    except (Exception, KeyboardInterrupt) as caught:
+        error = caught
+    for raised in comm.allgather(error):
+        if raised is not None:
+            raise raised
+    return tuple(np.concatenate(parts) for parts in zip(*comm.allgather(rows), strict=True))

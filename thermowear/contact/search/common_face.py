@@ -27,6 +27,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...parallel import rows_over_ranks
 from .face import Face, Surface
 from .projection import MIN_COSINE, nearest, overhang, project
 from .smooth_normals import across
@@ -92,7 +93,9 @@ class Opposite:
         return (self.cosine <= MAX_FACING_COSINE) & inside
 
 
-def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face | Surface):
+def opposite(
+    face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face | Surface, comm=None
+) -> Opposite:
     """Points of another face opposite to points of a face.
 
     Parameters
@@ -101,18 +104,27 @@ def opposite(face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face
     facet : ndarray of int, shape (n,)
     t : ndarray, shape (n,) or (n, 2)
     other : Face or Surface
-
-    Returns
-    -------
-    Opposite
+    comm : mpi4py.MPI.Comm, optional
+        Ranks that share the work; every rank calls, with the same points.
     """
+
+    def found(rows: slice) -> tuple[np.ndarray, ...]:
+        return _opposite(face, facet[rows], t[rows], other)
+
+    return Opposite(*rows_over_ranks(comm, len(facet), found))
+
+
+def _opposite(
+    face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face | Surface
+) -> tuple[np.ndarray, ...]:
+    """Columns of `Opposite`."""
     points, outward = face.points(facet, t), face.smooth_normals(facet, t)[0]
     closest, at, offset = project(other, points)
     overhangs = overhang(other, closest, at, offset)
     facet, t, line = opposite_parameters(
         points, outward, face.softness_at(facet), other, closest, at, nearest
     )
-    return Opposite(facet, t, *line, overhangs)
+    return facet, t, *line, overhangs
 
 
 def opposite_parameters(

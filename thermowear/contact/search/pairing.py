@@ -123,6 +123,7 @@ def pair(
     refine: bool = True,
     sliver: float = SLIVER,
     max_overhang: float = OVERHANG_TOLERANCE,
+    comm=None,
 ) -> Pairing:
     """Pair two faces on their common refinement.
 
@@ -142,6 +143,8 @@ def pair(
         Smallest distance of a cut from the ends of a facet, relative to it; plane models only.
     max_overhang : float
         Linear extrapolation of body 2 beyond its ends, relative to the face; plane models only.
+    comm : mpi4py.MPI.Comm, optional
+        Ranks that share the work, each with both faces; every rank calls.
 
     Raises
     ------
@@ -154,16 +157,23 @@ def pair(
             f"geometry.contact: {face_1.name} and {face_2.name} do not lie opposite each other; "
             "their outward normals must point against each other where they are to touch"
         )
-    return paired(face_1, face_2, kinematics, pieces)
+    return paired(face_1, face_2, kinematics, pieces, comm)
 
 
 def paired(
-    face_1: Face | Surface, face_2: Face | Surface, kinematics: Kinematics, pieces: Rule
+    face_1: Face | Surface,
+    face_2: Face | Surface,
+    kinematics: Kinematics,
+    pieces: Rule,
+    comm=None,
 ) -> Pairing:
-    """Pair two faces at given points of the face of body 1, merging coincident points."""
+    """Pair two faces at given points of the face of body 1, merging coincident points.
+
+    Parameters as in `pair`.
+    """
     facet, t = pieces.facet, pieces.t
     on_face = face_1.points(facet, t)
-    pairs = opposite(face_1, facet, t, face_2)
+    pairs = opposite(face_1, facet, t, face_2, comm)
     weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs)
     on_common = on_face + pairs.share[:, None] * pairs.offset
     weights *= np.maximum(kinematics.area_factor(on_common), 0.0)  # rounding on the axis

@@ -127,10 +127,10 @@ def _facing(face_1, face_2, pieces: Rule, places: np.ndarray, max_overhang: floa
     inner = inner if len(inner) else np.arange(count)
     pairs = opposite(face_1, pieces.facet, pieces.t, face_2)
     meeting = pairs.meets(face_1.extent, max_overhang).reshape(-1, count)[:, inner]
-    whole = meeting.all(axis=1)
+    whole = np.all(meeting, axis=1)
     kept = np.repeat(whole, count)
     if isinstance(face_1, Face):
-        facing = (pairs.cosine <= MAX_FACING_COSINE).reshape(-1, count)[:, inner].all(axis=1)
+        facing = np.all((pairs.cosine <= MAX_FACING_COSINE).reshape(-1, count)[:, inner], axis=1)
         _check_order(face_1, face_2, pairs, whole, facing & ~whole)
     return Rule(pieces.facet[kept], pieces.t[kept], pieces.weight[kept])
 

@@ -50,7 +50,7 @@ def contact_points(
     model: Model, comm, kinematics: Kinematics, face_1, face_2
 ) -> tuple[Pairing, np.ndarray]:
     """Contact points, with the gap of the initial shape, and pressure space Ψ."""
-    pairing, basis = _points(model, kinematics, face_1, face_2)
+    pairing, basis = _points(model, kinematics, face_1, face_2, comm=comm)
     shape = model.interface.initial_shape
     if shape is not None:
         pairing = replace(pairing, gap=initial_gap(comm, shape, pairing))
@@ -123,13 +123,22 @@ def _points(
     face_2,
     sliver: float = SLIVER,
     max_overhang: float = OVERHANG_TOLERANCE,
+    comm=None,
 ) -> tuple[Pairing, np.ndarray]:
-    """Contact points of two faces, and pressure space Ψ."""
+    """Contact points of two faces, and pressure space Ψ; parameters as in `pair`."""
     degree = model.discretisation.degree
     if model.interface.pressure_degree == "lobatto":  # at the nodes of body 1's facets
         pairing = pair(face_1, face_2, kinematics, degree + 1, refine=False)
         return pairing, np.eye(len(pairing.weights))
-    pairing = pair(face_1, face_2, kinematics, degree + 2, sliver=sliver, max_overhang=max_overhang)
+    pairing = pair(
+        face_1,
+        face_2,
+        kinematics,
+        degree + 2,
+        sliver=sliver,
+        max_overhang=max_overhang,
+        comm=comm,
+    )
     return pairing, pressure_basis(pairing, model.pressure_degree)
 
 

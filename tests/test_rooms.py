@@ -52,7 +52,7 @@ BARE = {
 MOST_LINES = 300
 MOST_MODULES = 14
 """Largest number of modules in a folder, unless they are all of one kind."""
-OF_A_KIND = {"geometry/geometries", "reference", "verification/cases"}
+OF_A_KIND = {"reference"}
 
 
 def module_of(path):

@@ -14,7 +14,7 @@ import time
 
 import numpy as np
 
-from thermowear.verification.cases.growing import CYLINDER, SPEED, SPHERE
+from thermowear.verification.cases.wear.growing import CYLINDER, SPEED, SPHERE
 from thermowear.verification.check import run_starter
 
 SHAPES = {"cylinder": CYLINDER, "sphere": SPHERE}

@@ -11,8 +11,8 @@ from thermowear.bulk.kinematics import kinematics_of
 from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
-from thermowear.geometry.geometries.arc_contact import BlockOnDisk
-from thermowear.geometry.geometries.inside_ring import DrumBrake, RingSegmentOnDisk
+from thermowear.geometry.geometries.arcs.arc_contact import BlockOnDisk
+from thermowear.geometry.geometries.arcs.inside_ring import DrumBrake, RingSegmentOnDisk
 
 from .measure import edges, unnamed
 from .sound import check_mesh, fault

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.case.tables.schema import MeshTable
-from thermowear.geometry.geometries.disk_brake import DiskBrake
+from thermowear.geometry.geometries.brakes.disk_brake import DiskBrake
 
 from .measure import ends, unnamed
 from .sound import check_mesh, check_surfaces, fault, spans

@@ -16,8 +16,8 @@ from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
-from thermowear.geometry.geometries.disk_brake_3d import DiskBrakeInSpace
-from thermowear.geometry.geometries.pad_outline import PadOutline
+from thermowear.geometry.geometries.brakes.disk_brake_3d import DiskBrakeInSpace
+from thermowear.geometry.geometries.brakes.pad_outline import PadOutline
 from thermowear.geometry.mesh.tagged import scaled_jacobians
 
 from .measure import edges

@@ -14,7 +14,7 @@ from thermowear.bulk.kinematics import Spatial
 from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
-from thermowear.geometry.geometries.disk_brake import DiskSector
+from thermowear.geometry.geometries.brakes.disk_brake import DiskSector
 from thermowear.parallel import sum_over_ranks
 
 from .measure import edges

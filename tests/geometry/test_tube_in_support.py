@@ -12,7 +12,7 @@ from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
-from thermowear.geometry.geometries.tube_in_support import TubeInSupport
+from thermowear.geometry.geometries.arcs.tube_in_support import TubeInSupport
 
 from .measure import edges, ends, unnamed
 from .sound import check_mesh, fault

@@ -14,7 +14,7 @@ import numpy as np
 import thermowear as tw
 from thermowear.geometry.mesh.tagged import compact
 from thermowear.parallel import on_root
-from thermowear.verification.cases.patch_in_space import (
+from thermowear.verification.cases.contact.patch_in_space import (
     HEIGHTS,
     MODULI,
     PRESSURE,

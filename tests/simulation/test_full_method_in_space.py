@@ -3,7 +3,12 @@
 import pytest
 
 import thermowear as tw
-from thermowear.verification.cases.patch_in_space import HEIGHTS, MODULI, PRESSURE, PatchInSpace
+from thermowear.verification.cases.contact.patch_in_space import (
+    HEIGHTS,
+    MODULI,
+    PRESSURE,
+    PatchInSpace,
+)
 
 
 @pytest.mark.parametrize("theta", [-1, 1])

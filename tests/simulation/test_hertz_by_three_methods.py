@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from thermowear.reference.elliptical_contact import elliptical_contact
-from thermowear.verification.cases.hertz import MODULUS
-from thermowear.verification.cases.hertz_in_space import BALL, BLOCK, COARSE, FORCE, pressed
+from thermowear.verification.cases.contact.hertz import MODULUS
+from thermowear.verification.cases.contact.hertz_in_space import BALL, BLOCK, COARSE, FORCE, pressed
 from thermowear.verification.quarter_meshes import sphere_on_block
 
 EXACT = elliptical_contact(FORCE, (BALL * 1e-3, BALL * 1e-3), MODULUS)

@@ -7,7 +7,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.case.tables.schema import MeshTable
-from thermowear.geometry.geometries.disk_brake import DiskSector
+from thermowear.geometry.geometries.brakes.disk_brake import DiskSector
 from thermowear.geometry.mesh.tagged import compact
 from thermowear.geometry.meshing.cells import (
     divided_hexahedra,

@@ -16,7 +16,7 @@ from thermowear.geometry.mesh.nodes import boundary
 from thermowear.geometry.meshing.cells import Sheet, grid, level, mesh_body, tagged_bodies
 from thermowear.geometry.reading.export import write_mesh
 from thermowear.serialise import pack
-from thermowear.verification.cases.patch_in_space import (
+from thermowear.verification.cases.contact.patch_in_space import (
     HEIGHTS,
     MODULI,
     PRESSURE,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.output.console import Terminal, print_summary
-from thermowear.verification.cases.moving_band import passed, surface
+from thermowear.verification.cases.heat.moving_band import passed, surface
 from thermowear.verification.check import run_starter
 
 from ..conftest import DEMOS

@@ -9,7 +9,7 @@ import pytest
 from thermowear.reference.growing_contact import growing_point
 from thermowear.simulation.geometry_update import geometry_update
 from thermowear.simulation.system.building import build
-from thermowear.verification.cases.growing import worn_half_width
+from thermowear.verification.cases.wear.growing import worn_half_width
 from thermowear.verification.check import run_starter
 
 from .hot_ring import HEAT

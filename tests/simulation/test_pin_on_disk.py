@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.verification.cases.pin_on_disk_in_space import (
+from thermowear.verification.cases.wear.pin_on_disk_in_space import (
     scar_of_a_ball,
     volumes_by_time,
     volumes_on_a_wide_track,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.errors import ComputationError
-from thermowear.verification.cases.ring_in_space import (
+from thermowear.verification.cases.steady.ring_in_space import (
     FACE_ENDS,
     RUNNING_IN,
     STEADY,

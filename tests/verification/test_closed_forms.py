@@ -3,7 +3,7 @@
 import pytest
 
 from thermowear.verification import minimality
-from thermowear.verification.cases.special_cases import SPECIAL_CASES
+from thermowear.verification.cases.steady.special_cases import SPECIAL_CASES
 from thermowear.verification.check import identified, printed
 
 

@@ -113,7 +113,7 @@ def _validate(chosen) -> int:
     case = load(chosen.case, tuple(chosen.overrides))
     properties = [f"{case.analysis.type} analysis", case.geometry.type, case.model]
     if case.geometry.from_file:
-        from ..geometry.reading.mesh_checks import described, whole_bodies
+        from ..geometry.checks.mesh_checks import described, whole_bodies
 
         properties += described(whole_bodies(case.tagged_mesh(), case.geometry))
     if case.geometry.initial_shape is not None:

@@ -11,10 +11,10 @@ from ..bulk.field import basis_element, lagrange_space
 from ..bulk.spaces import Spaces
 from ..compat import coordinate_element, geometry_dofmap
 from ..errors import CaseError
+from ..geometry.checks.mesh_checks import oriented
 from ..geometry.mesh.mixed import AnyMesh, joined
 from ..geometry.mesh.nodes import CORNERS, FACETS, boundary, reference_nodes
 from ..geometry.mesh.tagged import TaggedMesh, compact
-from ..geometry.reading.mesh_checks import oriented
 from ..lagrange import equispaced, matching
 from ..parallel import on_root
 from ..simulation.system.system import System

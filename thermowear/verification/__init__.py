@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-from .cases.annular_punch import annular_punch, running_in
-from .cases.beam_shakedown import beam_shakedown
-from .cases.blocks import pressure_conductance, temperature_dependent, two_slabs
-from .cases.contact_methods import methods_agree, patch
-from .cases.finite_elements import optimal_shape
-from .cases.fretting import fretting_cylinder, fretting_wear, mindlin
-from .cases.fuel_fretting import fuel_fretting
-from .cases.geometry_updates import block_on_ring, deep_wear, pin_on_disc
-from .cases.growing import growing_cylinder, growing_sphere
-from .cases.hertz import flat_punch, hertz_line, hertz_sphere
-from .cases.hertz_in_space import hertz_elliptical, hertz_sphere_3d, hertz_sphere_3d_fine
-from .cases.instability import half_plane_instability, sliding_rod
-from .cases.minimality import minimality
-from .cases.moving_band import moving_band
-from .cases.patch_in_space import patch_3d
-from .cases.pin_on_disk_in_space import pin_on_disk_3d
-from .cases.reciprocating import reciprocating
-from .cases.ring_in_space import ring_3d, ring_3d_whole
-from .cases.special_cases import SPECIAL_CASES
-from .cases.transient_heat import braking_stop, step_flux
+from .cases.contact.contact_methods import methods_agree, patch
+from .cases.contact.hertz import flat_punch, hertz_line, hertz_sphere
+from .cases.contact.hertz_in_space import hertz_elliptical, hertz_sphere_3d, hertz_sphere_3d_fine
+from .cases.contact.patch_in_space import patch_3d
+from .cases.cycles.fretting import fretting_cylinder, fretting_wear, mindlin
+from .cases.cycles.fuel_fretting import fuel_fretting
+from .cases.cycles.reciprocating import reciprocating
+from .cases.heat.blocks import pressure_conductance, temperature_dependent, two_slabs
+from .cases.heat.instability import half_plane_instability, sliding_rod
+from .cases.heat.moving_band import moving_band
+from .cases.heat.transient_heat import braking_stop, step_flux
+from .cases.steady.annular_punch import annular_punch, running_in
+from .cases.steady.finite_elements import optimal_shape
+from .cases.steady.minimality import minimality
+from .cases.steady.ring_in_space import ring_3d, ring_3d_whole
+from .cases.steady.special_cases import SPECIAL_CASES
+from .cases.wear.beam_shakedown import beam_shakedown
+from .cases.wear.geometry_updates import block_on_ring, deep_wear, pin_on_disc
+from .cases.wear.growing import growing_cylinder, growing_sphere
+from .cases.wear.pin_on_disk_in_space import pin_on_disk_3d
 from .check import Check, all_checks, compare, identified
 
 _CASES = SPECIAL_CASES | dict.fromkeys((

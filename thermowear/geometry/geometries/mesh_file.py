@@ -20,14 +20,14 @@ from ...case.tables.geometry import keyed
 from ...case.tables.plane_geometry import HalvableGeometry
 from ...case.values.section import MODEL, KeyFault, UserFile
 from ...case.values.units import Area, Coordinate, Length
+from ..checks.mesh_checks import check_mesh
+from ..checks.pair_checks import check_pair
+from ..checks.solid_pairs import projected_area
+from ..checks.solid_surfaces import check_solid_mesh
 from ..reading.assembly import assemble, divided
 from ..reading.contents import MeshContents, joined
 from ..reading.file_contents import read_contents
-from ..reading.mesh_checks import check_mesh
 from ..reading.named import Named
-from ..reading.pair_checks import check_pair
-from ..reading.solid_pairs import projected_area
-from ..reading.solid_surfaces import check_solid_mesh
 
 _KEYS = {
     "body_names": "bodies",

@@ -1,1 +1,1 @@
-"""Mesh files: reading, checking, writing."""
+"""Mesh files: reading and writing."""

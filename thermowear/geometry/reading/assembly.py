@@ -8,13 +8,13 @@ from __future__ import annotations
 import numpy as np
 
 from ...errors import CaseError
+from ..checks.mesh_checks import oriented
+from ..checks.solid_checks import oriented_solid
 from ..mesh.mixed import AnyMesh, of_blocks, retagged
 from ..mesh.nodes import boundary, facet_nodes, numbered
 from ..mesh.tagged import TaggedMesh, compact
 from .contents import CellBlock, MeshContents
-from .mesh_checks import oriented
 from .named import TYPES, Named, facets_of
-from .solid_checks import oriented_solid
 
 _ORDERS = {
     "triangle": {3: 1, 6: 2, 10: 3},

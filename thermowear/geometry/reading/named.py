@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import CaseError
+from ..checks.solid_checks import at
 from ..mesh.nodes import FACETS, boundary, numbered
 from .contents import CellBlock, MeshContents
-from .solid_checks import at
 
 TYPES = {2: {3: "triangle", 4: "quadrilateral"}, 3: {4: "tetrahedron", 8: "hexahedron"}}
 """Cell types by dimension and number of corners."""

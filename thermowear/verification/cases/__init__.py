@@ -1,1 +1,1 @@
-"""Verification cases, one file each."""
+"""Verification cases by subject."""

@@ -1,0 +1,1 @@
+"""Checks of meshes: cells, names, and the position of the bodies."""

@@ -1,0 +1,1 @@
+"""Disk brakes, in a half section and in space."""

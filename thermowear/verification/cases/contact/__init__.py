@@ -1,0 +1,1 @@
+"""Contact without wear: patch tests, contact methods, Hertz."""

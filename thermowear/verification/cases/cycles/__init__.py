@@ -1,0 +1,1 @@
+"""Fretting and reciprocating sliding."""

@@ -1,0 +1,1 @@
+"""Friction heat and temperature-dependent properties, steady and in time."""

@@ -1,0 +1,1 @@
+"""Steady state: special cases, minimum principle, running-in to it."""

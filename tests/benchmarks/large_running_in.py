@@ -5,21 +5,27 @@
 
 A pad of friction material slides on a metal disk, here a block: quadratic tetrahedra by gmsh, fine
 at the contact and coarser away from it, faces that do not match; about 2 000 pressure coefficients
-at 1 M displacement unknowns. Heat is quasi-steady. Each size (thousands of displacement unknowns)
-runs in a process of its own, so that the largest memory is that of the size.
+at 1 M displacement unknowns. Heat is quasi-steady. Sizes are thousands of displacement
+unknowns.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
-import math
-import resource
-import subprocess
-import sys
 import tempfile
 import time
 from pathlib import Path
+
+from mpi4py import MPI
+
+import thermowear as tw
+from thermowear.geometry.mesh.gmsh_session import gmsh_model
+from thermowear.results import Result
+from thermowear.simulation.analyses.positioning import prepare
+from thermowear.simulation.analyses.run import analyse
+from thermowear.simulation.from_case import analysis_of, model_of
+
+from .sizes import Console, run_sizes
 
 PAD, DISK = (40.0, 30.0, 14.0), (56.0, 46.0, 16.0)
 """Sizes of the blocks [mm]; the pad lies in the middle of the disk."""
@@ -38,8 +44,6 @@ _UNKNOWNS = 0.66e6
 
 def write_mesh(path: Path, thousands: float) -> None:
     """Write the mesh of both blocks for a number of displacement unknowns."""
-    from thermowear.geometry.mesh.gmsh_session import gmsh_model
-
     size = (_UNKNOWNS / (thousands * 1e3)) ** (1 / 3)
     with gmsh_model("large") as gmsh:
         occ, tags = gmsh.model.occ, []
@@ -92,32 +96,9 @@ def case_tables(mesh: Path, options: argparse.Namespace) -> dict:
     }
 
 
-def measured(thousands: float, options: argparse.Namespace) -> dict:
-    """Run one size in this process."""
-    from mpi4py import MPI
-
-    import thermowear as tw
-    from thermowear.simulation.analyses.positioning import prepare
-    from thermowear.simulation.analyses.run import analyse
-    from thermowear.simulation.from_case import analysis_of, model_of
-    from thermowear.simulation.runtime.observer import Observer
-    from thermowear.timer import Phases
-
-    since = time.perf_counter()
-
-    def passed() -> str:
-        spent = time.process_time()
-        return f"{time.perf_counter() - since:7.1f} s (cpu {spent:6.1f} s) {largest():6.2f} GB "
-
-    class Console(Observer):
-        def note(self, text):
-            print(passed(), "note:", text, file=sys.stderr)
-
-        def phase(self, name):
-            print(passed(), name, file=sys.stderr, flush=True)
-
-    observer = Console()
-    phases = Phases(observer.phase)
+def solved(thousands: float, options: argparse.Namespace, console: Console) -> tuple[Result, dict]:
+    """Running-in of one size."""
+    phases = console.phases
     with tempfile.TemporaryDirectory() as folder:
         mesh = Path(folder) / "blocks.msh"
         with phases("make mesh"):
@@ -125,65 +106,20 @@ def measured(thousands: float, options: argparse.Namespace) -> dict:
         case = tw.load(case_tables(mesh, options))
         system = prepare(model_of(case), MPI.COMM_WORLD, phases)
         started = time.perf_counter()
-        _, result = analyse(system, analysis_of(case), observer)
-    summary, last = result.summary, result.history[-1]
-    names = (
-        "dofs_displacement",
-        "dofs_temperature",
-        "contact_points",
-        "steps",
-        "max_pressure_Pa",
-        "max_temperature_K",
-        "shape_range_m",
-        "wear_volume_1_m3",
-        "heat_balance_relative_error",
-        "equilibrium_relative_error",
-        "solver",
-    )
-    found = {name: summary.get(name) for name in names}
-    found |= {
+        _, result = analyse(system, analysis_of(case), console)
+    return result, {
         "pressure_coefficients": system.basis.shape[1],
-        "time_s": last.time,
+        "time_s": result.history[-1].time,
         "stopped": str(result.stopped),
         "analysis_seconds": time.perf_counter() - started,
-        "seconds": time.perf_counter() - since,
-        "processor_seconds": time.process_time(),
-        "memory_GB": largest(),
     }
-    return found | {"phases": {name: round(s, 2) for name, s in phases.seconds.items()}}
-
-
-def largest() -> float:
-    """Largest memory of this process so far [GB]."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9
 
 
 def main() -> None:
-    """Run all sizes and print a table with growth exponents."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--sizes", type=float, nargs="+", default=[60, 150, 400, 1000])
     parser.add_argument("--steps", type=int, default=100)
-    parser.add_argument("--solver", default="auto")
-    parser.add_argument("--conductance", default="2e4")
     parser.add_argument("--until-steady", action="store_true")
-    parser.add_argument("--alone", action="store_true", help="run the first size in this process")
-    options = parser.parse_args()
-    if options.alone:
-        print(json.dumps(measured(options.sizes[0], options), default=float))
-        return
-    before = None
-    for size in options.sizes:
-        chosen = [*sys.argv[1:], "--sizes", str(size), "--alone"]
-        command = [sys.executable, "-m", "tests.benchmarks.large_running_in", *chosen]
-        done = subprocess.run(command, stdout=subprocess.PIPE, text=True, check=True)
-        found = json.loads(done.stdout.splitlines()[-1])
-        print(json.dumps(found, indent=1))
-        if before is not None:
-            grown = found["dofs_displacement"] / before["dofs_displacement"]
-            for name in ("processor_seconds", "memory_GB"):
-                exponent = math.log(found[name] / before[name]) / math.log(grown)
-                print(f"growth exponent of {name}: {exponent:.2f}")
-        before = found
+    run_sizes("large_running_in", parser, solved, ("processor_seconds", "memory_GB"))
 
 
 if __name__ == "__main__":

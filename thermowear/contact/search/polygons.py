@@ -110,8 +110,8 @@ def divided(polygons: Polygons, kind: str) -> tuple[np.ndarray, np.ndarray]:
     """Parts (n, 4, 2) of polygons, and the polygon of each.
 
     Convex polygons are divided from their first corner, into quadrilaterals in those, into
-    triangles in triangles; others into triangles about a point, see `_middles`,
-    or by cutting off ears.
+    triangles in triangles; others into triangles about the mean of their corners or, where that
+    does not see all sides, by cutting off ears.
     """
     p, of, first = polygons.points, polygons.of, polygons.first
     if not len(of):
@@ -125,37 +125,10 @@ def divided(polygons: Polygons, kind: str) -> tuple[np.ndarray, np.ndarray]:
     fan = np.stack([0 * k, k, k + 1, (k + step) % sides], axis=1)
     bent = np.flatnonzero(~polygons.per_corner(convex))
     following = p[polygons.after]
-    about = np.stack([_middles(polygons), p, following, following], axis=1)[bent]
+    mean = np.column_stack([np.bincount(of, x)[of] / np.bincount(of)[of] for x in p.T])
+    about = np.stack([mean, p, following, following], axis=1)[bent]
     about, of_bent = without_folds(p, of, about, of[bent])
     corners = np.concatenate([p[origin[:, None] + fan], about])
     of_part = np.concatenate([of[origin], of_bent])
     order = np.argsort(of_part, kind="stable")
     return corners[order], of_part[order]
-
-
-def _middles(polygons: Polygons) -> np.ndarray:
-    """Points of polygons from which all of their sides are seen, for each corner, shape (n, 2).
-
-    Their mean or, where that does not see all sides, the best one of their corners.
-    """
-    p, of, following = polygons.points, polygons.of, polygons.points[polygons.after]
-    mean = np.column_stack([np.bincount(of, x)[of] / np.bincount(of)[of] for x in p.T])
-    first = polygons.first
-    count = np.diff(np.append(first, len(of)))
-    hidden = np.flatnonzero(np.minimum.reduceat(_areas(mean, p, following), first) < -TOLERANCE)
-    if not len(hidden):
-        return mean
-    k = np.minimum(np.arange(count[hidden].max()), count[hidden, None] - 1)  # the last repeated
-    at = first[hidden, None] + k
-    seen = _areas(p[at][:, :, None], p[at][:, None], following[at][:, None]).min(axis=2)
-    chosen = np.take_along_axis(at, seen.argmax(axis=1)[:, None], axis=1)[:, 0]
-    best = np.full(len(first), -1)
-    best[hidden] = chosen
-    best = polygons.per_corner(best)
-    return np.where(best[:, None] >= 0, p[best], mean)
-
-
-def _areas(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """Twice the signed areas of triangles with corners (..., 2)."""
-    u, v = b - a, c - a
-    return u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]

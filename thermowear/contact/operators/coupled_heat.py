@@ -17,14 +17,9 @@ from scipy.sparse.linalg import LinearOperator, cg, gmres, splu
 
 from ...bulk.heat.conduction import Conduction
 from ...errors import ComputationError
-from ...parallel import sum_over_ranks
 from .condensation import transfer_matrix
-from .heat import (
-    NO_HEAT_SINK,
-    BaselineResponse,
-    ThermalState,
-)
-from .heat_exchange import FaceHeat, HeatExchange, InterfaceHeat
+from .heat import NO_HEAT_SINK, BaselineResponse, FaceHeat, ThermalState, at_faces
+from .heat_exchange import HeatExchange, InterfaceHeat
 
 _TOLERANCE = 1e-9
 """Reduction of the temperature jump in perfect contact."""
@@ -89,30 +84,23 @@ class CoupledExchange:
 
         The baseline is the response with the bath, which this replaces.
         """
-        face, direct = self._face, self._direct
-        T1, T2 = baseline.rise
-        released = face.partition * friction_heat, (1 - face.partition) * friction_heat
-        across = direct * (T2 - T1)
-        heat = face.traces[0] @ (face.weights * (released[0] + face.shift * T1 + across))
-        heat += face.traces[1] @ (face.weights * (released[1] + face.shift * T2 - across))
-        multipliers = None
+        face, (T1, T2) = self._face, baseline.rise
+        resting = face.state((T1, T2), friction_heat, self._direct * (T2 - T1))
+        heat, beyond = face.nodal_heat(resting, bath=True), 0.0
         if self._crossing is not None:
-            change = self._at_faces(self._respond(heat))
+            change = self._at_faces(heat)
             multipliers = self._multipliers(T2 + change[1] - T1 - change[0])
-            heat = heat + self._load @ multipliers
-        change = self._at_faces(self._respond(heat))
+            heat, beyond = heat + self._load @ multipliers, self._crossing @ multipliers
+        change = self._at_faces(heat)
         T1, T2 = T1 + change[0], T2 + change[1]
-        crossing = direct * (T2 - T1)
-        if self._crossing is not None:
-            crossing = crossing + self._crossing @ multipliers
-        return ThermalState((T1, T2), (released[0] + crossing, released[1] - crossing))
+        return face.state((T1, T2), friction_heat, self._direct * (T2 - T1) + beyond)
 
     def _multipliers(self, difference: np.ndarray) -> np.ndarray:
         """Heat coefficients that close a temperature difference (n,) of the coupled bodies."""
         assert self._crossing is not None
 
         def closed(multipliers: np.ndarray) -> np.ndarray:
-            T1, T2 = self._at_faces(self._respond(self._load @ multipliers))
+            T1, T2 = self._at_faces(self._load @ multipliers)
             return self._jump @ (T1 - T2) + self._resisted @ multipliers
 
         conductance = np.maximum(self._direct, self._face.shift)
@@ -129,17 +117,13 @@ class CoupledExchange:
             raise ComputationError(_UNCONVERGED)
         return found
 
-    def _respond(self, heat: np.ndarray) -> np.ndarray:
-        """Nodal rise by nodal heat in the coupled bodies, owned rows [K]."""
+    def _at_faces(self, heat: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rises at the points of both faces by nodal heat in the coupled bodies, (n,) each [K]."""
         try:
-            return self._conduction.respond(heat)
+            rise = self._conduction.respond(heat)
         except ComputationError as error:
             raise ComputationError(f"{NO_HEAT_SINK} ({error})") from None
-
-    def _at_faces(self, rise: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values of a nodal rise (n_owned,) at the points of both faces, shape (n,) each."""
-        first, second = (sum_over_ranks(self._comm, t.T @ rise) for t in self._face.traces)
-        return first, second
+        return at_faces(rise, self._face.traces, self._comm)
 
 
 AnyFace = InterfaceHeat | CoupledHeat

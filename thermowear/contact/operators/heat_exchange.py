@@ -8,7 +8,6 @@ both faces by a sparse matrix. The points themselves only carry values.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,56 +16,13 @@ import scipy.sparse as sp
 from scipy.linalg.lapack import dgetrf, dgetrs
 
 from ...errors import ComputationError
-from ...parallel import sum_over_ranks
 from .exchange_matrix import (
-    Division,
     coupling_matrix,
-    divided,
     jump_scale,
     scaled_functions,
 )
 from .face_nodes import FaceNodes
-from .heat import NO_HEAT_SINK, BaselineResponse, ThermalState
-from .pressure import Basis
-
-
-@dataclass(frozen=True)
-class FaceHeat:
-    """Heat at the contact points, and its exchange between the faces.
-
-    Attributes
-    ----------
-    weights : ndarray, shape (n,)
-        Areas of the points [m²].
-    basis : ndarray or csr_array, shape (n, m)
-        Basis Ψ of the exchanged heat in perfect contact.
-    traces : tuple of csr_matrix, shape (n_owned, n)
-        Transposed trace Eᵀ of each face.
-    shift : float
-        Heat transfer to a bath at ambient included in the factorised conduction on both faces, and
-        subtracted again here [W/(m² K)].
-    partition : float or ndarray, shape (n,)
-        Fraction of the friction heat released on body 1.
-    """
-
-    weights: np.ndarray
-    basis: Basis
-    traces: tuple[sp.csr_matrix, sp.csr_matrix]
-    shift: float
-    partition: float | np.ndarray
-
-    def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
-        """Nodal heat of the contact [W], owned rows; heat of the bath included on request."""
-        shift = self.shift if bath else 0.0
-        first, second = (
-            trace @ (self.weights * (flux + shift * rise))
-            for trace, rise, flux in zip(self.traces, state.rise, state.flux, strict=True)
-        )
-        return first + second
-
-    def divided(self, conductance: np.ndarray) -> Division:
-        """Divide conductances (n,) into parts that are finite and well scaled."""
-        return divided(conductance, self.shift * self.basis.shape[1])
+from .heat import NO_HEAT_SINK, BaselineResponse, FaceHeat, ThermalState
 
 
 @dataclass(frozen=True)
@@ -161,11 +117,8 @@ class HeatExchange:
     def state(self, friction_heat: np.ndarray, baseline: BaselineResponse) -> ThermalState:
         """Temperatures and fluxes due to friction heat [W/m²] at the points, shape (n,)."""
         changes, crossing = self.solved(friction_heat, baseline)
-        (T1, T2), f = baseline.rise, self.face.partition
-        return ThermalState(
-            (T1 + changes[0], T2 + changes[1]),
-            (f * friction_heat + crossing, (1 - f) * friction_heat - crossing),
-        )
+        T1, T2 = baseline.rise
+        return self.face.state((T1 + changes[0], T2 + changes[1]), friction_heat, crossing)
 
     def opened(self, per_heat: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
         """Functionals (weak gaps, say) per load, from those per nodal heat of each face, (k, n_f).
@@ -282,17 +235,3 @@ class CoupledDistortion:
             return result
         first, second = self.change
         return result + first @ (second @ loads)
-
-
-def baseline_response(
-    rise: np.ndarray, traces: tuple[sp.csr_matrix, sp.csr_matrix], comm, opening=None
-) -> BaselineResponse:
-    """Response of the faces to a nodal rise (n_owned,), with the weak gap opened by it."""
-    T1, T2 = (sum_over_ranks(comm, trace.T @ rise) for trace in traces)
-    return BaselineResponse((T1, T2), opening)
-
-
-def opened_by(per_rise: Sequence[np.ndarray], rises: Sequence[np.ndarray], comm) -> np.ndarray:
-    """Weak gap (m,) opened by nodal rises (n_owned,), each with its gap per rise (n_owned, m)."""
-    pairs = zip(per_rise, rises, strict=False)
-    return sum_over_ranks(comm, sum(response.T @ rise for response, rise in pairs))

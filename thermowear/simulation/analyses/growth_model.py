@@ -14,7 +14,8 @@ from petsc4py import PETSc
 
 import numpy as np
 
-from ...contact.operators.heat_exchange import HeatExchange, baseline_response
+from ...contact.operators.heat import at_faces
+from ...contact.operators.heat_exchange import HeatExchange
 from ...laws.stability import LoadFree, PerturbationMatrices, Rate
 from ...parallel import sum_over_ranks
 from ..heat.heat_steps import HeatSteps
@@ -128,7 +129,7 @@ class GrowthModel:
         system, space, thermal = self._system, self._space, self._thermal
         conduction, X = thermal.conduction, self._fields
         assert conduction.capacity is not None
-        T1, T2 = baseline_response(X, thermal.face.traces, system.comm).rise
+        T1, T2 = at_faces(X, thermal.face.traces, system.comm)
         weights = system.weights[:, None]
         f = np.reshape(thermal.face.partition, (-1, 1))
         exchanged = weights * self._crossing  # each field satisfies the interface heat law

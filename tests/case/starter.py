@@ -28,14 +28,8 @@ FILE = {
 """Keys of a geometry that was meshed elsewhere, with the bodies of the cylinder."""
 
 
-class _Gone:
-    """Stands for a key that is taken out."""
-
-    def __repr__(self) -> str:
-        return "GONE"
-
-
-GONE = _Gone()
+GONE = None
+"""Stands for a key that is taken out."""
 
 
 @lru_cache
@@ -49,9 +43,14 @@ def _parsed(name: str) -> dict[str, Any]:
 
 
 def tables(name: str = STEADY, changes: dict[str, Any] | None = None) -> dict[str, Any]:
-    """A starter case with keys, named by their paths, set or taken out."""
-    result = copy.deepcopy(_parsed(name))
-    for path, value in (changes or {}).items():
+    """A starter case with changes."""
+    return changed(_parsed(name), changes or {})
+
+
+def changed(case: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
+    """A copy of a case with keys, named by their paths, set or taken out."""
+    result = copy.deepcopy(case)
+    for path, value in changes.items():
         *tables_above, key = path.split(".")
         table = result
         for part in tables_above:

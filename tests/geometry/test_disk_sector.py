@@ -17,24 +17,16 @@ from thermowear.contact.search.pairing import pair
 from thermowear.geometry.geometries.brakes.disk_brake import DiskSector
 from thermowear.parallel import sum_over_ranks
 
+from ..simulation.space import BRAKE
 from .measure import edges
 from .sound import fault
 
-SIZES = {
-    "pad_inner_radius": "80 mm",
-    "pad_outer_radius": "120 mm",
-    "pad_thickness": "15 mm",
-    "pad_angle": "60 deg",
-    "disk_inner_radius": "60 mm",
-    "disk_outer_radius": "130 mm",
-    "disk_thickness": "20 mm",
-}
 COMM = MPI.COMM_WORLD
 FACE = math.pi / 6 * (0.12**2 - 0.08**2)
 
 
 def brake(**changes):
-    return DiskSector(type="disk-sector", **(SIZES | changes))
+    return DiskSector(**BRAKE["geometry"] | changes)
 
 
 def built(degree, **keys):

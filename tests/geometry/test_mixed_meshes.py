@@ -9,7 +9,8 @@ import pytest
 import thermowear as tw
 from thermowear.geometry.mesh.mixed import MixedMesh, block_of, block_with, count_cells, joined
 from thermowear.geometry.reading.export import write_mesh
-from thermowear.verification.cases.contact.patch_in_space import HEIGHTS, SIZE, PatchInSpace
+from thermowear.verification.cases.contact.contact_methods import HEIGHTS
+from thermowear.verification.cases.contact.patch_in_space import SIZE, PatchInSpace
 
 from ..solid_meshes import write_blocks
 from .test_bad_solids import file_tables

@@ -6,21 +6,13 @@ import pytest
 from thermowear.case.tables.schema import MeshTable
 from thermowear.geometry.geometries.rectangular_punch import RectangularPunch
 
+from ..simulation.space import PUNCH
 from .measure import edges
 from .sound import fault
 
-SIZES = {
-    "size_x": "60 mm",
-    "size_y": "80 mm",
-    "height": "50 mm",
-    "block_x": "120 mm",
-    "block_y": "140 mm",
-    "block_height": "60 mm",
-}
-
 
 def punch(**changes):
-    return RectangularPunch(type="rectangular-punch", **(SIZES | changes))
+    return RectangularPunch(**PUNCH["geometry"] | changes)
 
 
 def boxes(mesh, body):

@@ -11,7 +11,8 @@ import tomli_w
 from thermowear.app.cli import main
 from thermowear.output.pictures.maps import triangulated
 
-from ..simulation.space import BRAKE, PUNCH, changed
+from ..case.starter import changed
+from ..simulation.space import BRAKE, PUNCH
 
 
 def areas(triangles):

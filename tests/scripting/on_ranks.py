@@ -14,13 +14,8 @@ import numpy as np
 import thermowear as tw
 from thermowear.geometry.mesh.tagged import compact
 from thermowear.parallel import on_root
-from thermowear.verification.cases.contact.patch_in_space import (
-    HEIGHTS,
-    MODULI,
-    PRESSURE,
-    SIZE,
-    PatchInSpace,
-)
+from thermowear.verification.cases.contact.contact_methods import HEIGHTS, MODULI, PRESSURE
+from thermowear.verification.cases.contact.patch_in_space import SIZE, PatchInSpace
 
 from ..case.starter import STEADY
 from .from_case import own_mesh, python_model

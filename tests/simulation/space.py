@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import copy
 from typing import Any
 
 PUNCH: dict[str, Any] = {
@@ -55,18 +54,3 @@ BRAKE: dict[str, Any] = {
     "wear": {"pad": {"coefficient": "2e-7 1/MPa"}},
     "analysis": {"type": "steady"},
 }
-
-
-def changed(tables: dict[str, Any], changes: dict[str, Any]) -> dict[str, Any]:
-    """A copy with keys, named by their paths, set; None takes one out."""
-    result = copy.deepcopy(tables)
-    for path, value in changes.items():
-        *above, key = path.split(".")
-        table = result
-        for part in above:
-            table = table.setdefault(part, {})
-        if value is None:
-            del table[key]
-        else:
-            table[key] = copy.deepcopy(value)
-    return result

@@ -8,8 +8,8 @@ from thermowear.app.shaping import shape, steady_case
 from thermowear.errors import CaseError
 from thermowear.geometry.cad.design import write_table
 
-from ..case.starter import STEADY, solved, tables
-from .space import BRAKE, PUNCH, changed
+from ..case.starter import STEADY, changed, solved, tables
+from .space import BRAKE, PUNCH
 
 COARSE = ("mesh.degree=5", "mesh.elements=8")
 INITIAL = "analysis={type='initial'}"

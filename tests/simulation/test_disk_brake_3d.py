@@ -7,14 +7,13 @@ import thermowear as tw
 
 from ..case.starter import tables
 from ..geometry.test_disk_brake_3d import brake
-from .space import changed
 
 NAME, FORCE, SPEED = "disk-brake-3d", 900.0, 10.0
 COARSE = {"mesh": {"degree": 2, "elements": 4, "grading": 1.0}}
 
 
 def run(**changes):
-    return tw.run(tw.load(changed(tables(NAME), COARSE | changes)))
+    return tw.run(tw.load(tables(NAME, COARSE | changes)))
 
 
 @pytest.fixture(scope="module")

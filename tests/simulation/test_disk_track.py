@@ -7,7 +7,8 @@ import pytest
 
 import thermowear as tw
 
-from .space import BRAKE, changed
+from ..case.starter import changed
+from .space import BRAKE
 
 FORCE, SPEED, FRICTION, ANGLE, INNER, OUTER = 1e4, 50.0, 0.35, math.pi / 3, 0.08, 0.12
 PAD, DISK = 2e-13, 6e-13

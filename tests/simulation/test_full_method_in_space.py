@@ -3,12 +3,8 @@
 import pytest
 
 import thermowear as tw
-from thermowear.verification.cases.contact.patch_in_space import (
-    HEIGHTS,
-    MODULI,
-    PRESSURE,
-    PatchInSpace,
-)
+from thermowear.verification.cases.contact.contact_methods import HEIGHTS, MODULI, PRESSURE
+from thermowear.verification.cases.contact.patch_in_space import PatchInSpace
 
 
 @pytest.mark.parametrize("theta", [-1, 1])

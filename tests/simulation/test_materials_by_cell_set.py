@@ -14,8 +14,8 @@ from thermowear.geometry.moving.remeshed import meshed_anew
 from thermowear.model.body import Facing
 from thermowear.simulation.from_case import model_of
 
+from ..case.starter import changed
 from ..layered import layered_case, write_layered
-from .space import changed
 
 SOFT = {"young_modulus": "1 GPa", "poisson_ratio": 0.0}
 HARD = {"young_modulus": "50 GPa", "poisson_ratio": 0.0}

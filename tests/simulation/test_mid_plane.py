@@ -19,9 +19,9 @@ from thermowear.geometry.meshing.divisions import graded_face, growing, joined
 from thermowear.geometry.reading.export import write_mesh
 from thermowear.simulation.from_case import model_of
 
-from ..case.starter import tables
+from ..case.starter import changed, tables
 from ..contact.solids import HEIGHTS, SIZE, two_solids
-from .space import BRAKE, changed
+from .space import BRAKE
 
 FORCE, HOT = 6e3, 60.0
 STEEL = {"young_modulus": "200 GPa", "poisson_ratio": 0.3, "expansion": "1.2e-5 1/K"}

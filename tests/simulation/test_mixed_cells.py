@@ -16,13 +16,8 @@ from thermowear.geometry.mesh.nodes import boundary
 from thermowear.geometry.meshing.cells import Sheet, grid, level, mesh_body, tagged_bodies
 from thermowear.geometry.reading.export import write_mesh
 from thermowear.serialise import pack
-from thermowear.verification.cases.contact.patch_in_space import (
-    HEIGHTS,
-    MODULI,
-    PRESSURE,
-    SIZE,
-    PatchInSpace,
-)
+from thermowear.verification.cases.contact.contact_methods import HEIGHTS, MODULI, PRESSURE
+from thermowear.verification.cases.contact.patch_in_space import SIZE, PatchInSpace
 
 from ..geometry.test_solid_files import NAMES
 from ..test_parallel import summaries

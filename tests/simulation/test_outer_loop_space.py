@@ -7,8 +7,9 @@ import tomli_w
 import thermowear as tw
 from thermowear.simulation.from_case import run as run_case
 
+from ..case.starter import changed
 from ..test_parallel import summaries
-from .space import BRAKE, PUNCH, changed
+from .space import BRAKE, PUNCH
 from .test_checkpoint import Watched, assert_the_same
 
 AREA = 0.06 * 0.08

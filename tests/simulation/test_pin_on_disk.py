@@ -13,8 +13,7 @@ from thermowear.verification.cases.wear.pin_on_disk_in_space import (
 )
 
 from ..case.bad import faults
-from ..case.starter import tables
-from .space import changed
+from ..case.starter import changed, tables
 
 FLAT, RUNNING_IN, BALL = "pin-on-disk", "pin-on-disk-running-in", "pin-on-disk-ball"
 FORCE, SPEED, RADIUS, TRACK = 250.0, 25.0, 4e-3, 20e-3

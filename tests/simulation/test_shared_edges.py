@@ -8,7 +8,8 @@ import pytest
 import thermowear as tw
 from thermowear.reference.guided_face import DrumBrakeShoe
 
-from .space import BRAKE, changed
+from ..case.starter import changed
+from .space import BRAKE
 
 FORCE = 1e4
 RADII = {"disk_inner_radius": "80 mm", "disk_outer_radius": "0.12 m"}

@@ -6,9 +6,9 @@ import tomli_w
 
 import thermowear as tw
 
-from ..case.starter import solved
+from ..case.starter import changed, solved
 from ..test_parallel import summaries
-from .space import BRAKE, PUNCH, changed
+from .space import BRAKE, PUNCH
 
 
 def run(tables, **changes):

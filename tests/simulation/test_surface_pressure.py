@@ -7,7 +7,8 @@ import pytest
 
 import thermowear as tw
 
-from .space import PUNCH, changed
+from ..case.starter import changed
+from .space import PUNCH
 from .test_shared_edges import RING
 
 BLOCKS = {

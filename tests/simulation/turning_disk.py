@@ -8,8 +8,7 @@ import numpy as np
 
 import thermowear as tw
 
-from ..case.starter import tables
-from .space import changed
+from ..case.starter import changed, tables
 
 AMBIENT, POWER, FRICTION = 293.15, 350.0, 0.38
 CONDUCTIVITY, CAPACITY = 48.0, 7200.0 * 460.0

@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ....case import load
+from ....case.tables.geometry import Geometry
 from ....case.tables.plane_geometry import PlaneGeometry
 from ....geometry.meshing.cells import (
     Claim,
@@ -94,27 +95,36 @@ def patch() -> Iterator[Check]:
     for method, cells, degree, (faces, columns, allowed) in itertools.product(
         METHODS, ("quadrilaterals", "triangles"), (1, 2, 3, 4), FACES
     ):
-        materials = zip(PatchGeometry.bodies, MODULI, strict=True)
-        stiff = {"penalty": f"{PENALTY} Pa/m"} if method == "penalty" else {}
-        tables = {
-            "title": "contact patch test",
-            "model": "plane-strain",
-            "geometry": PatchGeometry(columns=columns, triangles=cells == "triangles"),
-            "mesh": {"degree": degree},
-            "bodies": {
-                name: {"young_modulus": f"{E} Pa", "poisson_ratio": 0.0} for name, E in materials
-            },
-            "load": {"mean_pressure": f"{PRESSURE} Pa"},
-            "contact": {"method": method} | stiff,
-            "analysis": {"type": "initial"},
-        }
-        result, note = computed(load(tables)), f"{method}, {cells}, degree {degree}, {faces}"
-        quantity = f"pressure at the point of largest deviation, {note} [Pa]"
-        yield compare_worst(quantity, result.interface.pressure, PRESSURE, allowed, SOURCE)
-        shortened = PRESSURE * sum(h / E for h, E in zip(HEIGHTS, MODULI, strict=True))
-        shortened += PRESSURE / PENALTY if stiff else 0.0
-        approach = result.summary["approach_m"]
-        yield compare(f"approach, {note} [m]", approach, shortened, allowed, SOURCE)
+        geometry = PatchGeometry(columns=columns, triangles=cells == "triangles")
+        note = f"{cells}, degree {degree}, {faces}"
+        yield from patch_checks(geometry, "plane-strain", method, degree, note, allowed)
+
+
+def patch_checks(
+    geometry: Geometry, model: str, method: str, degree: int, note: str, allowed: float
+) -> Iterator[Check]:
+    """Pressure and approach of two blocks by a method."""
+    materials = zip(geometry.bodies, MODULI, strict=True)
+    stiff = {"penalty": f"{PENALTY} Pa/m"} if method == "penalty" else {}
+    tables = {
+        "title": "contact patch test",
+        "model": model,
+        "geometry": geometry,
+        "mesh": {"degree": degree},
+        "bodies": {
+            name: {"young_modulus": f"{E} Pa", "poisson_ratio": 0.0} for name, E in materials
+        },
+        "load": {"mean_pressure": f"{PRESSURE} Pa"},
+        "contact": {"method": method} | stiff,
+        "analysis": {"type": "initial"},
+    }
+    result, note = computed(load(tables)), f"{method}, {note}"
+    quantity = f"pressure at the point of largest deviation, {note} [Pa]"
+    yield compare_worst(quantity, result.interface.pressure, PRESSURE, allowed, SOURCE)
+    shortened = PRESSURE * sum(h / E for h, E in zip(HEIGHTS, MODULI, strict=True))
+    shortened += PRESSURE / PENALTY if stiff else 0.0
+    approach = result.summary["approach_m"]
+    yield compare(f"approach, {note} [m]", approach, shortened, allowed, SOURCE)
 
 
 def methods_agree() -> Iterator[Check]:

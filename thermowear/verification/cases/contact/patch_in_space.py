@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....case import load
 from ....case.tables.geometry import Geometry
 from ....geometry.mesh.mixed import joined
 from ....geometry.mesh.tagged import TaggedMesh
@@ -18,11 +17,10 @@ from ....geometry.meshing.cells import (
     mesh_lattice,
     tagged_bodies,
 )
-from ...check import Check, compare, compare_worst, computed
-from .contact_methods import METHODS, PENALTY, SOURCE
+from ...check import Check
+from .contact_methods import HEIGHTS, METHODS, patch_checks
 
-SIZE, HEIGHTS, PRESSURE = (0.04, 0.03), (0.02, 0.03), 50e6
-MODULI = (200e9, 70e9)
+SIZE = (0.04, 0.03)
 FACES = (("matching", (3, 3)), ("not matching", (2, 3)))
 """Label, and number of elements along x of each body; along y one fewer."""
 DISCRETISATIONS = ((1, 1), (1, 2), (2, 2))
@@ -97,8 +95,8 @@ def patch_3d() -> Iterator[Check]:
         geometry = PatchInSpace(
             columns=columns, orders=(order, order), tetrahedra=(cells == "tetrahedra",) * 2
         )
-        note = f"{method}, {cells} of order {order}, degree {degree}, {faces}"
-        yield from _checks(geometry, method, degree, note)
+        note = f"{cells} of order {order}, degree {degree}, {faces}"
+        yield from patch_checks(geometry, "3d", method, degree, note, 1e-10)
     for method, (upper, lower), orders in itertools.product(METHODS, MIXED, MIXED_ORDERS):
         geometry = PatchInSpace(
             columns=(4, 3),
@@ -106,29 +104,4 @@ def patch_3d() -> Iterator[Check]:
             tetrahedra=(upper == "tetrahedra", lower == "tetrahedra"),
         )
         cells = f"{upper} of order {orders[0]} on {lower} of order {orders[1]}"
-        yield from _checks(geometry, method, max(orders), f"{method}, {cells}")
-
-
-def _checks(geometry: PatchInSpace, method: str, degree: int, note: str) -> Iterator[Check]:
-    """Pressure and approach of two blocks by a method."""
-    stiff = {"penalty": f"{PENALTY} Pa/m"} if method == "penalty" else {}
-    materials = zip(PatchInSpace.bodies, MODULI, strict=True)
-    tables = {
-        "title": "contact patch test in space",
-        "model": "3d",
-        "geometry": geometry,
-        "mesh": {"degree": degree},
-        "bodies": {
-            name: {"young_modulus": f"{E} Pa", "poisson_ratio": 0.0} for name, E in materials
-        },
-        "load": {"mean_pressure": f"{PRESSURE} Pa"},
-        "contact": {"method": method} | stiff,
-        "analysis": {"type": "initial"},
-    }
-    result = computed(load(tables))
-    quantity = f"pressure at the point of largest deviation, {note} [Pa]"
-    yield compare_worst(quantity, result.interface.pressure, PRESSURE, 1e-10, SOURCE)
-    shortened = PRESSURE * sum(h / E for h, E in zip(HEIGHTS, MODULI, strict=True))
-    shortened += PRESSURE / PENALTY if stiff else 0.0
-    approach = result.summary["approach_m"]
-    yield compare(f"approach, {note} [m]", approach, shortened, 1e-10, SOURCE)
+        yield from patch_checks(geometry, "3d", method, max(orders), cells, 1e-10)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import signal
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +15,7 @@ from hypothesis import settings
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import thermowear as tw
+from thermowear.app.cli import main
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 
 from .gmsh_meshes import Interval, add_grid, tagged_mesh
@@ -34,6 +37,15 @@ HOT = DEMOS / "annular_punch.toml"
 COLD_RUNNING_IN = DEMOS / "annular_punch_running_in.toml"
 
 
+def demo_script(name: str):
+    """Script of the demos as a module."""
+    spec = importlib.util.spec_from_file_location(name, DEMOS / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # dataclasses look it up
+    spec.loader.exec_module(module)
+    return module
+
+
 def cold_tables(path: Path = HOT) -> dict:
     """The tables of a case file without heat."""
     import tomllib
@@ -49,6 +61,15 @@ def wear_law(b: float) -> tuple[str, str]:
         f"wear.punch.pressure_exponent={b}",
         f'wear.punch.coefficient="2e-7 1/MPa^{b}"',
     )
+
+
+NAMES = {
+    "bodies": {"upper": "upper", "lower": "lower"},
+    "contact": ["upper_face", "lower_face"],
+    "held": "upper_end",
+    "fixed": "lower_end",
+}
+"""Names in a file of such bodies, see `two_blocks`."""
 
 
 def two_blocks(
@@ -134,3 +155,27 @@ def heeds_ctrl_c():
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture
+def refused(capsys):
+    """Run a command that must be refused; its one line on stderr."""
+
+    def call(*words: str) -> str:
+        assert main(list(words)) == 1
+        printed = capsys.readouterr()
+        assert printed.out == ""
+        (line,) = printed.err.splitlines()
+        assert line.startswith("error: ")
+        return line
+
+    return call
+
+
+@pytest.fixture
+def in_folder(tmp_path, monkeypatch):
+    """Run a test in a folder of its own, with the signal handlers as they were."""
+    monkeypatch.chdir(tmp_path)
+    before = signal.getsignal(signal.SIGTERM)
+    yield
+    signal.signal(signal.SIGTERM, before)

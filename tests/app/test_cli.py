@@ -32,34 +32,13 @@ SURFACES = (
 )
 
 
-@pytest.fixture(autouse=True)
-def _place(tmp_path, monkeypatch):
-    """Every test in a folder of its own, with the signal handlers as they were."""
-    monkeypatch.chdir(tmp_path)
-    before = signal.getsignal(signal.SIGTERM)
-    yield
-    signal.signal(signal.SIGTERM, before)
+pytestmark = pytest.mark.usefixtures("in_folder")
 
 
 @pytest.fixture
 def case() -> str:
     Path("ring.toml").write_text(starter_text("annular-punch"), encoding="utf-8")
     return "ring.toml"
-
-
-@pytest.fixture
-def refused(capsys):
-    """Run a command that must be refused; its one line on stderr."""
-
-    def call(*words: str) -> str:
-        assert main(list(words)) == 1
-        printed = capsys.readouterr()
-        assert printed.out == ""
-        (line,) = printed.err.splitlines()
-        assert line.startswith("error: ")
-        return line
-
-    return call
 
 
 def contents(folder: Path = Path()) -> dict[str, bytes]:

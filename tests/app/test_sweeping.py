@@ -25,13 +25,7 @@ SMALL = ("--set", "mesh.degree=2", "--set", "mesh.elements=3")
 LOADS = ("--over", "load.force=1 kN,2 kN")
 
 
-@pytest.fixture(autouse=True)
-def _place(tmp_path, monkeypatch):
-    """Every test in a folder of its own, with the signal handlers as they were."""
-    monkeypatch.chdir(tmp_path)
-    before = signal.getsignal(signal.SIGTERM)
-    yield
-    signal.signal(signal.SIGTERM, before)
+pytestmark = pytest.mark.usefixtures("in_folder")
 
 
 def table(path) -> list[dict[str, str]]:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
-
 import numpy as np
 import pytest
 
 from ..case.starter import solved
-from ..conftest import DEMOS
+from ..conftest import demo_script
 
 COARSE = ("mesh.degree=3", "mesh.elements=8")
 
@@ -17,11 +14,7 @@ COARSE = ("mesh.degree=3", "mesh.elements=8")
 @pytest.fixture(scope="module")
 def slides():
     """The script as a module."""
-    spec = importlib.util.spec_from_file_location("slides", DEMOS / "slides.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["slides"] = module  # dataclasses look it up
-    spec.loader.exec_module(module)
-    return {slide.name: slide for slide in module.SLIDES}
+    return {slide.name: slide for slide in demo_script("slides").SLIDES}
 
 
 def runs(slide):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from functools import cache
 
 import numpy as np
@@ -13,7 +11,7 @@ import thermowear as tw
 from thermowear.app.variants import parse_over
 from thermowear.output.tables import write_points
 
-from ..conftest import DEMOS
+from ..conftest import DEMOS, demo_script
 
 COARSE = ("mesh.degree=3", "mesh.elements=8")
 NAMES = ("punch_on_strip", "block_on_disk", "drum_brake", "annular_punch", "disk_brake")
@@ -22,11 +20,7 @@ NAMES = ("punch_on_strip", "block_on_disk", "drum_brake", "annular_punch", "disk
 @cache
 def studies():
     """The studies of the script, by their cases."""
-    spec = importlib.util.spec_from_file_location("studies", DEMOS / "studies.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["studies"] = module  # dataclasses look it up
-    spec.loader.exec_module(module)
-    return {study.case: study for study in module.STUDIES}
+    return {study.case: study for study in demo_script("studies").STUDIES}
 
 
 @cache

@@ -13,8 +13,9 @@ from thermowear.geometry.mesh.nodes import boundary, numbered
 from thermowear.geometry.mesh.tagged import compact
 from thermowear.geometry.reading.export import write_mesh
 
+from ..conftest import NAMES
 from ..contact.solids import HEIGHTS, SIZE, two_solids
-from .test_solid_files import NAMES, file_tables
+from .test_solid_files import file_tables
 
 
 def blocks(order=1, divisions=((4, 3, 2), (4, 3, 2)), cell_type="tetrahedron"):

@@ -17,15 +17,8 @@ from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.geometry.reading.export import write_mesh
 
 from ..case.starter import STEADY, tables
-from ..conftest import two_blocks
+from ..conftest import NAMES, two_blocks
 from .measure import areas, edges, scaled_jacobians, unnamed
-
-NAMES = {
-    "bodies": {"upper": "upper", "lower": "lower"},
-    "contact": ["upper_face", "lower_face"],
-    "held": "upper_end",
-    "fixed": "lower_end",
-}
 
 
 def file_geometry(path, **keys):

@@ -12,9 +12,10 @@ from thermowear.geometry.reading.export import write_mesh
 from thermowear.verification.cases.contact.contact_methods import HEIGHTS
 from thermowear.verification.cases.contact.patch_in_space import SIZE, PatchInSpace
 
+from ..conftest import NAMES
 from ..solid_meshes import write_blocks
 from .test_bad_solids import file_tables
-from .test_solid_files import NAMES, outward, read, volume
+from .test_solid_files import outward, read, volume
 
 SIDES = {"upper": (0.0, HEIGHTS[0]), "lower": (-HEIGHTS[1], 0.0)}
 

@@ -19,15 +19,9 @@ from thermowear.geometry.reading.contents import VTK_ORDER
 from thermowear.geometry.reading.export import write_mesh
 from thermowear.lagrange import gauss
 
+from ..conftest import NAMES
 from ..contact.solids import bent, straight, two_solids
 from ..solid_meshes import BLOCKS, DISK, GLUED, PAD, write_blocks
-
-NAMES = {
-    "bodies": {"upper": "upper", "lower": "lower"},
-    "contact": ["upper_face", "lower_face"],
-    "held": "upper_end",
-    "fixed": "lower_end",
-}
 
 
 def geometry(path, **keys):

@@ -121,21 +121,6 @@ def copy(runs, tmp_path):
     return make
 
 
-@pytest.fixture
-def refused(capsys):
-    """Ask for a report that must be refused; the one line on stderr."""
-
-    def call(folder: Path) -> str:
-        assert main(["report", str(folder)]) == 1
-        printed = capsys.readouterr()
-        assert printed.out == ""
-        (line,) = printed.err.splitlines()
-        assert line.startswith("error: ")
-        return line
-
-    return call
-
-
 # ---- what it says ----
 
 
@@ -441,11 +426,11 @@ def test_no_results_no_report(tmp_path, refused):
     (tmp_path / "file").write_text("mine", encoding="utf-8")
     (tmp_path / "empty").mkdir()
     for name in ("none", "empty", "file", "n" * 300):
-        assert str(tmp_path / name) in refused(tmp_path / name)
+        assert str(tmp_path / name) in refused("report", str(tmp_path / name))
     assert sorted(path.name for path in tmp_path.iterdir()) == ["empty", "file"]
     for text in ("", "[]", "{}", '{"versions": null}', '{"versions": {"other": "1"}}', "\xff"):
         (tmp_path / "empty" / "run.json").write_text(text, encoding="latin-1")
-        assert "run.json" in refused(tmp_path / "empty")
+        assert "run.json" in refused("report", str(tmp_path / "empty"))
     assert [path.name for path in (tmp_path / "empty").iterdir()] == ["run.json"]
 
 
@@ -459,7 +444,7 @@ def test_a_broken_file_is_named(name, broken, copy, refused):
     if (name.endswith("csv"), broken) == (True, b"{"):
         broken = b""  # a single unfinished line is being written
     (folder / name).write_bytes(broken)
-    assert str(folder / name) in refused(folder)
+    assert str(folder / name) in refused("report", str(folder))
     assert not (folder / "report.html").exists()
 
 
@@ -483,7 +468,7 @@ def test_a_page_of_someone_else_stays(mine, copy, refused):
     """requirement: a report.html of other origin is refused and remains."""
     folder = copy(HERTZ)
     (folder / "report.html").write_bytes(mine)
-    line = refused(folder)
+    line = refused("report", str(folder))
     assert f"{folder / 'report.html'}: exists and is not a report of this program" in line
     assert (folder / "report.html").read_bytes() == mine
 
@@ -492,10 +477,10 @@ def test_a_folder_or_a_link_of_someone_else_stays(copy, refused):
     """requirement: neither a folder of that name nor a broken link is replaced."""
     folder = copy(HERTZ)
     (folder / "report.html").mkdir()
-    assert "not a report of this program" in refused(folder)
+    assert "not a report of this program" in refused("report", str(folder))
     (folder / "report.html").rmdir()
     (folder / "report.html").symlink_to("nowhere.html")
-    assert "not a report of this program" in refused(folder)
+    assert "not a report of this program" in refused("report", str(folder))
     assert (folder / "report.html").is_symlink()
 
 
@@ -507,4 +492,6 @@ def test_where_nothing_can_be_written(copy, refused, monkeypatch):
 
     folder = copy(HERTZ)
     monkeypatch.setattr(Path, "write_text", full)
-    assert refused(folder).endswith("report.html: cannot be written: No space left on device")
+    assert refused("report", str(folder)).endswith(
+        "report.html: cannot be written: No space left on device"
+    )

@@ -8,6 +8,8 @@ from thermowear.case.tables.schema import MeshTable
 from thermowear.geometry.geometries.on_block import CylinderOnBlock
 from thermowear.geometry.mesh.tagged import TaggedMesh
 
+from ..conftest import NAMES
+
 
 def cylinder(radius: float, zone: float, elements: int, half: bool = False) -> TaggedMesh:
     """Lower half of a cylinder that touches the origin from above, and the block below it."""
@@ -146,15 +148,7 @@ def case_tables(path, force: float, thickness: str = "1 mm", **changes) -> dict:
     tables = {
         "title": "cylinders",
         "model": "plane-strain",
-        "geometry": {
-            "type": "file",
-            "path": str(path),
-            "bodies": {"upper": "upper", "lower": "lower"},
-            "contact": ["upper_face", "lower_face"],
-            "held": "upper_end",
-            "fixed": "lower_end",
-            "thickness": thickness,
-        },
+        "geometry": {"type": "file", "path": str(path), "thickness": thickness} | NAMES,
         "mesh": {"degree": 2},
         "bodies": {
             "upper": {"young_modulus": "200 GPa", "poisson_ratio": 0.3},

@@ -20,6 +20,7 @@ from thermowear.geometry.reading.export import write_mesh
 from thermowear.simulation.from_case import model_of
 
 from ..case.starter import changed, tables
+from ..conftest import NAMES
 from ..contact.solids import HEIGHTS, SIZE, two_solids
 from .space import BRAKE
 
@@ -32,13 +33,9 @@ def blocks_on_planes(folder, cell_type, **geometry):
     """Case of two hot blocks between smooth planes, a quarter of them."""
     path = folder / "blocks.msh"
     write_mesh(two_solids(((3, 2, 2), (2, 3, 2)), 1, cell_type=cell_type), path)
-    known = {
+    known = NAMES | {
         "type": "file",
         "path": str(path),
-        "bodies": {"upper": "upper", "lower": "lower"},
-        "contact": ["upper_face", "lower_face"],
-        "held": "upper_end",
-        "fixed": "lower_end",
         "symmetry": ["upper_low_x", "lower_low_x"],
         "rollers": ["upper_low_y", "lower_low_y"],
         "mid_plane": ["upper_end", "lower_end"],

@@ -19,7 +19,7 @@ from thermowear.serialise import pack
 from thermowear.verification.cases.contact.contact_methods import HEIGHTS, MODULI, PRESSURE
 from thermowear.verification.cases.contact.patch_in_space import SIZE, PatchInSpace
 
-from ..geometry.test_solid_files import NAMES
+from ..conftest import NAMES
 from ..test_parallel import summaries
 
 CONDUCTIVITIES, HOT, COLD = (5.0, 40.0), 360.0, 300.0

@@ -29,7 +29,8 @@ DISCRETISATIONS = ((1, 1), (1, 2), (2, 2))
 """Orders of the cells, and degrees of the displacement."""
 MIXED = (("tetrahedra", "hexahedra"), ("hexahedra", "tetrahedra"))
 MIXED_ORDERS = ((1, 1), (1, 2), (2, 2))
-"""Cells of the upper and lower body where they differ, and their orders."""
+MIXED_COLUMNS = (4, 3), (2, 3)
+"""Cells of the upper and lower body where they differ, their orders, and elements along x."""
 
 
 class PatchInSpace(Geometry):
@@ -99,14 +100,17 @@ def patch_3d() -> Iterator[Check]:
         )
         note = f"{method}, {cells} of order {order}, degree {degree}, {faces}"
         yield from _checks(geometry, method, degree, note)
-    for method, (upper, lower), orders in itertools.product(METHODS, MIXED, MIXED_ORDERS):
+    for method, (upper, lower), orders, columns in itertools.product(
+        METHODS, MIXED, MIXED_ORDERS, MIXED_COLUMNS
+    ):
         geometry = PatchInSpace(
-            columns=(4, 3),
+            columns=columns,
             orders=orders,
             tetrahedra=(upper == "tetrahedra", lower == "tetrahedra"),
         )
         cells = f"{upper} of order {orders[0]} on {lower} of order {orders[1]}"
-        yield from _checks(geometry, method, max(orders), f"{method}, {cells}")
+        note = f"{method}, {cells}, {columns[0]} on {columns[1]} columns"
+        yield from _checks(geometry, method, max(orders), note)
 
 
 def _checks(geometry: PatchInSpace, method: str, degree: int, note: str) -> Iterator[Check]:

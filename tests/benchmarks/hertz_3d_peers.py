@@ -16,7 +16,7 @@ Errors are relative to an axisymmetric run of bodies of the same sizes (degree 8
 is of the first approach. The others are means over the first approach and the further steps that
 GetFEM computes, as the edge of the contact passes through the elements: of the largest pressure, of
 the radius by the second moments ``a² = 5/2 ∫ p r² dA / F``, and of the pressure on the face (L²),
-all of them to the half ellipsoid of that run, grown by Hertz's formulas to the force that was found.
+all to the half ellipsoid of that run, grown by Hertz's formulas to the force that was found.
 The L² errors are integrated at contact points (thermowear) or at 112 points a facet (GetFEM);
 one common rule gives the same to 1 %. GetFEM's traction is not its multiplier p, of degree 1, but
 ``(p - r gap)₊``, whose error is printed below the table.

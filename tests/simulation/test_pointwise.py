@@ -5,11 +5,17 @@ from functools import cache
 import numpy as np
 import pytest
 
+from thermowear.contact.wear.implicit_step import Slope
+from thermowear.errors import CaseError
 from thermowear.reference.elliptical_contact import elliptical_contact
+from thermowear.simulation.interface.interface_problem import interface_problem
+from thermowear.simulation.system.conditions import ConditionModel
 from thermowear.verification.cases.hertz import MODULUS
 from thermowear.verification.cases.hertz_in_space import BALL, BLOCK, COARSE, FORCE, pressed
-from thermowear.verification.check import run_starter
+from thermowear.verification.check import run_starter, starter
 from thermowear.verification.quarter_meshes import sphere_on_block
+
+from ..systems import built
 
 EXACT = elliptical_contact(FORCE, (BALL * 1e-3, BALL * 1e-3), MODULUS)
 
@@ -58,3 +64,14 @@ def test_a_soft_layer_is_compressed_at_each_point():
     pressing = i.pressure > 0.01 * i.pressure.max()
     parabola = 5e-6 - i.x**2 / (2 * 10e-3)
     assert i.pressure[pressing] * 1e-13 == pytest.approx(parabola[pressing], abs=2e-8)
+
+
+def test_wear_is_refused():
+    """requirement: an implicit step of wear, as of a model in Python, is an error."""
+    system = built(starter("sphere-on-block", "contact.method=pointwise", "mesh.degree=2"))
+    none = np.zeros(len(system.weights))
+    conditions = ConditionModel(system).at(0.0, none, None, none == 0.0)
+    method = interface_problem(system)._method
+    arguments = system.pairing.gap, Slope.diagonal(none + 1e-15), None, conditions, None
+    with pytest.raises(CaseError, match="without wear"):
+        method.solve(*arguments)

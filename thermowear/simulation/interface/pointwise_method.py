@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from ...contact.solvers.pointwise import PointwiseContact
 from ...errors import CaseError
 from ..system.system import System
@@ -31,9 +33,10 @@ class PointwiseMethod(CondensedMethod):
     def solve(
         self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise=None
     ) -> ContactSolution:
-        weak = super().solve(gap, slope, guess, conditions, heat, pointwise)
-        if heat is not None or pointwise is not None or len(slope.rows):
+        wears = len(slope.rows) or np.any(slope.point != self._system.softness)
+        if wears or heat is not None or pointwise is not None:
             raise CaseError(_ALONE)
+        weak = super().solve(gap, slope, guess, conditions, heat)
         given, start = gap + self._dead, weak.warm_start
         found = self._points.solve(
             given, slope.point, conditions.load, start.coefficients, start.motion

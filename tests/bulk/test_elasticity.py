@@ -96,7 +96,7 @@ def test_free_expansion_has_no_stress():
     spaces = lagrange_spaces(elastic.bodies, 3)
     u = nodal(elastic, lambda x: 1.2e-5 * 100 * x[:2])
     rise = np.full(spaces.owned, 100.0)
-    thermal, forces = times(elastic.thermal_load(spaces), rise), residual(elastic, u)
+    thermal, forces = elastic.thermal_load(spaces).multiply(rise), residual(elastic, u)
     assert np.abs(forces - thermal).max() <= 1e-10 * np.abs(forces).max()
     stresses = _stresses(elastic, u, spaces, rise)
     energy = integral(elastic.bodies, *(ufl.inner(σ, σ) * ufl.dx for σ in stresses))

@@ -84,7 +84,7 @@ def test_free_expansion_is_free_of_stress(model):
     rise, stretch = 80.0, 1.0 if isinstance(model, PlaneStress) else 1 + ν
     expanded = nodal(elastic, lambda x: stretch * α * rise * x[:2])
     spaces = lagrange_spaces(elastic.bodies, 2)
-    heated = times(elastic.thermal_load(spaces), np.full(spaces.owned, rise))
+    heated = elastic.thermal_load(spaces).multiply(np.full(spaces.owned, rise))
     forces = times(elastic.stiffness, expanded)
     assert forces == pytest.approx(heated, abs=1e-10 * np.abs(heated).max())
     stresses = [

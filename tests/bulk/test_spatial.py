@@ -75,7 +75,7 @@ def test_free_expansion_is_free_of_stress():
     squares = integral(bodies, *(ufl.inner(σ, σ) * ufl.dx for σ in stresses))
     root_mean = (squares / (sum(HEIGHTS) * SIZE[0] * SIZE[1])) ** 0.5
     assert root_mean < 1e-11 * α * rise * MODULI["upper"]
-    forces = times(elastic.thermal_load(heat), warm)
+    forces = elastic.thermal_load(heat).multiply(warm)
     left = times(elastic.stiffness, grown) - forces
     assert np.abs(left).max() < 1e-10 * np.abs(forces).max()
 

@@ -34,7 +34,6 @@ from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.parallel import sum_over_ranks
 
-from ..bulk.fields import times
 from ..conftest import two_blocks
 
 COMM = MPI.COMM_WORLD
@@ -266,7 +265,7 @@ def test_hot_bodies(kind):
     case = build(2, (3, 4), rollers=SIDES)
     spaces = lagrange_spaces(case.elastic.bodies, 2)
     rise = np.full(spaces.owned, 50.0)
-    forces = times(case.elastic.thermal_load(spaces), rise)
+    forces = case.elastic.thermal_load(spaces).multiply(rise)
     at_face = value_trace(spaces, case.pairing.sides[0]).T @ rise
     heat = thermal_traction(case.elastic, case.pairing) * sum_over_ranks(COMM, at_face)
     contact = method(case, kind, modes=np.zeros((len(heat), 0)))

@@ -105,7 +105,8 @@ def test_volumes_and_surfaces(half, degree, allowed):
     assert np.hypot(hub[..., 0], hub[..., 1]).max() == pytest.approx(0.054)
     facets = np.sort(mesh.facets[:, :3], axis=1)
     assert len(np.unique(facets, axis=0)) == len(facets)
-    assert geometry.fixed in mesh.surfaces
+    assert (geometry.fixed, geometry.mid_plane) == ("disk_hub", ("disk_middle",) if half else ())
+    assert {geometry.fixed, *geometry.mid_plane} <= set(mesh.surfaces)
     assert set(mesh.facet_tags) == set(range(1, len(mesh.surfaces) + 1))
 
 

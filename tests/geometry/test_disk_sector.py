@@ -124,3 +124,12 @@ def test_the_geometry_says_how_it_moves():
 )
 def test_sizes_that_do_not_fit_are_refused(changes, key):
     assert fault(brake, **changes)[0] == key
+
+
+@pytest.mark.parametrize(
+    ("hub", "fixed", "mid_plane"),
+    [(False, "disk_middle", ()), (True, "disk_inside", ("disk_middle",))],
+)
+def test_supports(hub, fixed, mid_plane):
+    """requirement: the middle plane is clamped, or a plane of symmetry of a disk on a hub."""
+    assert (brake(hub=hub).fixed, brake(hub=hub).mid_plane) == (fixed, mid_plane)

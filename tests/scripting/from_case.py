@@ -13,7 +13,7 @@ from thermowear.simulation.from_case import model_of
 
 from ..case.starter import tables
 
-CELLS, FACETS = (101, 205, 7, 33), (41, 7, 32, 205, 5, 90, 11, 3, 77)
+CELLS, FACETS = (101, 205, 7, 33), (41, 7, 32, 205, 5, 90, 11, 3, 77, 14, 60)
 """Tags in the place of 1, 2, 3, …"""
 
 
@@ -63,8 +63,8 @@ def python_model(name, *overrides, apart=False, backwards=False):
         mesh, cells, facets = own_mesh(alone(tagged, body.parts)) if apart else whole
         materials = {CELLS[tagged.bodies.index(p)]: m for p, m in body.materials.items()}
         fixed = () if body is known.bodies[0] else tuple(tag_of[s] for s in body.fixed)
-        rollers = tuple(tag_of[s] for s in body.rollers)
-        bodies[body.name] = tw.Body(body.name, mesh, cells, facets, materials, fixed, rollers)
+        guided = (tuple(tag_of[s] for s in own) for own in (body.rollers, body.mid_plane))
+        bodies[body.name] = tw.Body(body.name, mesh, cells, facets, materials, fixed, *guided)
     held, other = (bodies[body.name] for body in known.bodies)
 
     def surface(name):
@@ -83,6 +83,8 @@ def python_model(name, *overrides, apart=False, backwards=False):
     motions = {}
     if motion.velocity is not None:
         motions = {held: tw.Translation(motion.velocity, motion.across)}
+    elif motion.center is not None:
+        motions = {other: tw.Rotation(motion.angular_velocity, motion.center)}
     elif motion.angular_velocity is not None:
         motions = {held: tw.Rotation(motion.angular_velocity)}
     heat = known.heat

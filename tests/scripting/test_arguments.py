@@ -150,6 +150,13 @@ def test_supports(ring):
             interfaces=[tw.Interface(punch.surface(face.one.tag), loose.surface(face.other.tag))],
             heat=None,
         )
+    flat = replace(plate, fixed=(), mid_plane=plate.fixed)
+    with pytest.raises(tw.CaseError, match=r"^Body 'plate': mid_plane requires a mesh in space"):
+        replace(
+            model,
+            interfaces=[tw.Interface(punch.surface(face.one.tag), flat.surface(face.other.tag))],
+            heat=None,
+        )
     with pytest.raises(tw.CaseError, match=r"^Interface: found MeshBody\(name='plate'"):
         tw.Interface(face.one, plate)
 

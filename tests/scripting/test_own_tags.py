@@ -55,6 +55,7 @@ def test_the_running_in_of_a_case(overrides, until):
     ("name", "overrides", "analysis"),
     [
         ("rectangular-punch", ("mesh.degree=2", "mesh.elements=3"), "steady"),
+        ("disk-sector", ("mesh.degree=2", "mesh.elements=3", "geometry.hub=true"), "steady"),
         ("punch-on-strip-tilting", ("mesh.degree=2", "load.moment=0.5 N m"), "steady"),
         ("stacked-blocks", ("mesh.degree=2",), "steady"),
         ("stacked-blocks", ("mesh.degree=2", "analysis.type=initial"), "initial"),
@@ -83,6 +84,21 @@ def test_all_analyses(name, overrides, analysis):
         assert found.summary["critical_speed_m_per_s"] == pytest.approx(
             known.summary["critical_speed_m_per_s"], rel=1e-12
         )
+
+
+def test_other_supports_of_the_same_mesh():
+    """requirement: a body with other supports is not solved with the factors of the first one."""
+    model, face, _ = python_model("disk-sector", "mesh.elements=3", "geometry.hub=true")
+    disk = face.other.body
+    before = model.steady().result.interface.shape
+    bent = replace(disk, mid_plane=())
+    (motion,) = model.motions.values()
+    faces = [replace(face, other=bent.surface(face.other.tag))]
+    after = replace(model, interfaces=faces, motions={bent: motion})
+    found = after.steady().result.interface.shape
+    anew = replace(after, _shared={}).steady().result.interface.shape
+    np.testing.assert_allclose(found, anew, rtol=0.0, atol=1e-12 * np.ptp(anew))
+    assert np.ptp(found) > 1.1 * np.ptp(before)
 
 
 def test_only_the_relative_motion_matters():

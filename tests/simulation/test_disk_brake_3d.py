@@ -85,3 +85,40 @@ def test_hot_starter():
     track = np.abs(away - 0.1) < 0.01
     faces = [rise[track & (np.abs(points[..., 2] - z) < 1e-9)].mean() for z in (0.0, -0.012)]
     assert faces[0] == pytest.approx(faces[1], rel=0.03)
+
+
+HALF = {
+    "geometry.half": True,
+    "load.pressure": None,
+    "heat.power": None,
+    "heat.cooling.disk_back": None,
+}
+
+
+@pytest.mark.parametrize("solver", ["direct", "multigrid"])
+def test_hot_half_disk(solver):
+    """
+    requirement: the middle of the ring stays flat and expands freely in its plane, the hub is at
+    rest; the hat, where it is bolted, takes the moment of friction; no heat passes the middle.
+    """
+    coarse = {"degree": 2, "elements": 4, "grading": 1.0, "solver": solver}
+    result = run(**HALF, mesh=coarse, **{"motion.angular_velocity": "1 rad/s"})
+    assert result.summary["heat_balance_relative_error"] < 1e-6
+    assert result.summary["equilibrium_relative_error"] < 1e-6
+    fields = result.fields
+    at, u, rise = (
+        values[fields.body == 2]
+        for values in (fields.points, fields.displacement, fields.temperature - 293.15)
+    )
+    r = np.hypot(at[..., 0], at[..., 1])
+    middle, top = (np.abs(at[..., 2] - z) < 1e-9 for z in (-0.006, 0.026))
+    largest = np.linalg.norm(u, axis=-1).max()
+    assert np.abs(u[middle, 2]).max() < 1e-4 * largest  # sampled slightly inside of the cells
+    assert np.abs(u[top & (r < 0.0541)]).max() < 1e-4 * largest
+    assert np.abs(u[top & (r > 0.056), 2]).max() > 0.05 * largest
+    grown = np.einsum("...i,...i->...", u[..., :2], at[..., :2]) / r
+    rim = middle & (r > 0.13 - 1e-9)
+    turned = (at[..., 0] * u[..., 1] - at[..., 1] * u[..., 0])[rim].mean() / 0.13
+    free = 1.1e-5 * 0.13 * rise[middle].mean()
+    assert grown[rim].mean() == pytest.approx(free, rel=0.05)
+    assert turned < 0

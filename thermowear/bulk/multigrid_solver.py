@@ -94,33 +94,37 @@ class MultigridSolver:
     ):
         self.iterations: list[int] = []
         self._matrix, self._spaces, self._fixed = matrix, spaces, fixed
-        self._symmetric = symmetric
+        self._coarse, self._symmetric = coarse, symmetric
+
+    @cached_property
+    def _solver(self) -> PETSc.KSP:
+        """Krylov method with its levels, set up for the first solution. Every rank calls.
+
+        Before it, the memory of the levels may serve a factor for many columns.
+        """
+        matrix, spaces, symmetric = self._matrix, self._spaces, self._symmetric
         linear = _linear(spaces)
-        held = _at_vertices(spaces, fixed, linear)
-        prolongation = _prolongation(linear, spaces, held, fixed)
-        below = matrix.ptap(prolongation) if coarse is None else coarse(linear)
+        held = _at_vertices(spaces, self._fixed, linear)
+        prolongation = _prolongation(linear, spaces, held, self._fixed)
+        below = matrix.ptap(prolongation) if self._coarse is None else self._coarse(linear)
         eliminate(below, held)
         for level in (matrix, below):
             level.setBlockSize(spaces.components)
             level.setOption(PETSc.Mat.Option.SPD, symmetric)
         below.setNearNullSpace(_near_nullspace(linear, below))
-        self._solver = _krylov_solver(matrix, symmetric)
-        multigrid = self._solver.getPC()
+        solver = _krylov_solver(matrix, symmetric)
+        multigrid = solver.getPC()
         multigrid.setMGInterpolation(1, prolongation)
         multigrid.getMGCoarseSolve().setOperators(below)
-        options = PETSc.Options(self._solver.getOptionsPrefix())
+        options = PETSc.Options(solver.getOptionsPrefix())
         chosen = _OPTIONS if symmetric else _UNSYMMETRIC_OPTIONS
         for name, value in chosen.items():
             options[name] = value
-        self.repeat()  # which reads the options of all levels
-        self._solver.getPC().setUpOnBlocks()
+        solver.setUp()  # reads the options of all levels
+        multigrid.setUpOnBlocks()
         for name in chosen:
             options.delValue(name)
-
-    def repeat(self) -> None:
-        """Set up the levels, again after a change of values with unchanged sparsity pattern."""
-        self._solver.setOperators(self._matrix)
-        self._solver.setUp()
+        return solver
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Solve for one or several right-hand sides; see `DirectSolver.solve`."""

@@ -15,13 +15,14 @@ from petsc4py import PETSc
 import numpy as np
 
 from .bodies import Bodies
+from .body_solvers import BodySolvers
 from .direct_solver import DirectSolver
 from .field import reference_element
 from .multigrid_solver import MultigridSolver
 from .spaces import Spaces
 
-AnySolver = DirectSolver | MultigridSolver
-"""Solver of the equations of the bodies; both have the same methods."""
+AnySolver = DirectSolver | BodySolvers | MultigridSolver
+"""Solver of the equations of the bodies; all have the same methods."""
 
 _MEASURED = 61_605, 0.49e9, 1.40
 """Unknowns and bytes of a factor in space, and its growth exponent: measured for bodies of one
@@ -59,6 +60,8 @@ class SolverChoice:
     single : bool
         True if the analysis needs a single solution, and no compliance.
     reason : str
+    one_at_a_time : bool
+        True if factors of bodies are made when they are needed, and only one of them is kept.
     """
 
     name: str = "direct"
@@ -68,6 +71,7 @@ class SolverChoice:
     available: float = float("nan")
     single: bool = False
     reason: str = "default"
+    one_at_a_time: bool = False
 
     @property
     def iterative(self) -> bool:
@@ -172,6 +176,7 @@ def linear_solver(
     fixed: np.ndarray,
     symmetry: str = "definite",
     coarse: Callable[[Spaces], PETSc.Mat] | None = None,
+    coupled: bool = False,
 ) -> AnySolver:
     """Set up the chosen solver of a matrix. Every rank calls.
 
@@ -186,7 +191,11 @@ def linear_solver(
         See `DirectSolver`; indefinite symmetric matrices are always factorised.
     coarse : callable, optional
         See `MultigridSolver`.
+    coupled : bool
+        True if the matrix couples the bodies.
     """
     if choice.iterative and symmetry in ("definite", "none"):
         return MultigridSolver(matrix, spaces, fixed, coarse, symmetric=symmetry == "definite")
-    return DirectSolver(matrix, symmetry, dim=spaces.dim)
+    if coupled or len(spaces.each) == 1:
+        return DirectSolver(matrix, symmetry, dim=spaces.dim)
+    return BodySolvers(matrix, spaces, symmetry, choice.one_at_a_time)

@@ -18,6 +18,7 @@ from dolfinx import fem
 
 from .bodies import Bodies
 from .compiled import nodal_loads
+from .direct_solver import multiply
 from .field import as_function, lagrange_space, owned
 
 
@@ -74,8 +75,17 @@ class Spaces:
         parts = zip(self.each, self.split(values), strict=True)
         return [as_function(space, part, name) for space, part in parts]
 
-    def placed(self, index: int, rows: sp.csr_matrix) -> sp.csr_matrix:
-        """Rows of one body as rows of all, the others empty."""
+    def body_of(self, rows: np.ndarray) -> int:
+        """Index of the body that owned rows belong to, all to the same. Every rank calls."""
+        own = int(np.searchsorted(self.starts, rows[0], side="right")) - 1 if len(rows) else -1
+        return max(self.comm.allgather(own))
+
+    def placed(self, index: int, rows: np.ndarray | sp.csr_matrix):
+        """Rows of one body as rows of all, the others zero."""
+        if isinstance(rows, np.ndarray):
+            result = np.zeros((self.owned, *rows.shape[1:]), order="F")
+            self.split(result)[index][...] = rows
+            return result
         before, after = self.starts[index], self.owned - self.starts[index + 1]
         none = (sp.csr_matrix((count, rows.shape[1])) for count in (before, after))
         return sp.vstack([next(none), rows, next(none)], format="csr")
@@ -117,3 +127,23 @@ def block_diagonal(blocks: Sequence[PETSc.Mat]) -> PETSc.Mat:
         return blocks[0]
     rows = [[b if i == k else None for i in range(len(blocks))] for k, b in enumerate(blocks)]
     return PETSc.Mat().createNest(rows, comm=blocks[0].comm).convert(PETSc.Mat.Type.AIJ)
+
+
+@dataclass(frozen=True)
+class BodyMatrices:
+    """Matrix that does not couple bodies, by the blocks of each, see `block_diagonal`.
+
+    Attributes
+    ----------
+    each : tuple of petsc4py.PETSc.Mat
+    columns : Spaces
+        Spaces of the vectors that it multiplies.
+    """
+
+    each: tuple[PETSc.Mat, ...]
+    columns: Spaces
+
+    def multiply(self, values: np.ndarray) -> np.ndarray:
+        """Product with owned values of all bodies. Every rank calls."""
+        parts = zip(self.each, self.columns.split(values), strict=True)
+        return np.concatenate([multiply(matrix, part) for matrix, part in parts])

@@ -108,6 +108,9 @@ class Body:
         Clamped surfaces, also the one on the rigid holder.
     rollers : tuple of str
         Surfaces that cannot move along y, but freely along x.
+    mid_plane : tuple of str
+        Surfaces in space that cannot move along z, but freely in their plane z = const: on a plane
+        of symmetry of the body, or on a smooth support.
     surfaces : tuple of str
         Named surfaces.
     ring : float
@@ -119,6 +122,7 @@ class Body:
     materials: Mapping[str, Material]
     fixed: tuple[str, ...] = ()
     rollers: tuple[str, ...] = ()
+    mid_plane: tuple[str, ...] = ()
     surfaces: tuple[str, ...] = ()
     ring: float = 1.0
 

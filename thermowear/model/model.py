@@ -153,7 +153,8 @@ class Model:
         """True if planes of symmetry cut a sector from bodies that rotate in space.
 
         The shear traction of friction is antisymmetric about these planes. It twists the whole ring
-        without changing gap or pressure, and is left out, as in axisymmetric models.
+        without changing gap or pressure, and is left out, as in axisymmetric models. A mid-plane,
+        normal to the axis of rotation, cuts no sector: the shear is symmetric about it.
         """
         cut = self.symmetry or any(body.rollers for body in self.bodies)
         return bool(cut) and self.kinematics == "3d" and self.motion.center is not None

@@ -58,6 +58,9 @@ class MeshBody:
     fixed, rollers : int or sequence of int
         Tags of clamped surfaces; of surfaces that cannot move along y, but freely along x, also of
         one on a holder.
+    mid_plane : int or sequence of int
+        In space: tags of surfaces on planes z = const that cannot move along z, but freely in the
+        plane, also of one on a holder.
     """
 
     name: str
@@ -67,6 +70,7 @@ class MeshBody:
     materials: Material | Mapping[int, Material] = field(repr=False)
     fixed: int | Sequence[int] = ()
     rollers: int | Sequence[int] = ()
+    mid_plane: int | Sequence[int] = ()
 
     def __post_init__(self):
         if isinstance(self.materials, Mapping) != hasattr(self.cells, "values"):
@@ -111,11 +115,11 @@ class MeshBody:
 
     def in_model(self, surfaces: tuple[str, ...], held: BodySurface | None) -> Body:
         """Body of a model, with all its surfaces, on a holder or fixed."""
-        fixed, rollers = (
+        fixed, rollers, mid_plane = (
             tuple(self.surface(tag).name for tag in np.atleast_1d(np.asarray(tags, dtype=int)))
-            for tags in (self.fixed, self.rollers)
+            for tags in (self.fixed, self.rollers, self.mid_plane)
         )
         if held is not None and fixed:
             raise CaseError(f"Body {self.name!r}: is on a holder; leave out fixed")
-        clamped = fixed if held is None else tuple({held.name} - set(rollers))
-        return Body(self.name, self.parts, clamped, rollers, surfaces)
+        clamped = fixed if held is None else tuple({held.name} - {*rollers, *mid_plane})
+        return Body(self.name, self.parts, clamped, rollers, mid_plane, surfaces)

@@ -232,7 +232,7 @@ class ScriptedModel:
 def _check_surfaces(model: Model, known: Sequence[str]) -> None:
     """Reject surfaces whose facets do not bound their body."""
     holder, heat = model.holder, model.heat or Heat()
-    supports = [name for body in model.bodies for name in (*body.fixed, *body.rollers)]
+    supports = [n for b in model.bodies for n in (*b.fixed, *b.rollers, *b.mid_plane)]
     loads = *holder.surface_forces, *holder.surface_pressures
     thermal = *heat.cooling, *heat.temperature, *heat.flux, *heat.power
     for name in (*model.interface.faces, *supports, *loads, *thermal, *model.symmetry):
@@ -240,7 +240,9 @@ def _check_surfaces(model: Model, known: Sequence[str]) -> None:
             body, _, tag = name.rpartition(":")
             raise CaseError(f"Model: facets with the tag {tag} do not bound the body {body!r}")
     for held in model.bodies:
-        if not (held.fixed or held.rollers):
+        if held.mid_plane and model.kinematics != "3d":
+            raise CaseError(f"Body {held.name!r}: mid_plane requires a mesh in space")
+        if not (held.fixed or held.rollers or held.mid_plane):
             raise CaseError(f"Body {held.name!r}: is neither on a holder nor fixed")
 
 

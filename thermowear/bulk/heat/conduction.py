@@ -15,12 +15,14 @@ import scipy.sparse as sp
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
+from ..body_solvers import solver_in_body
 from ..direct_solver import multiply
 from ..field import without_fixed
 from ..multigrid_solver import MultigridSolver
 from ..solver_choice import AnySolver, SolverChoice, linear_solver
 from ..spaces import Spaces
 from .advection import Advection
+from .body_conduction import BodyConduction
 from .even_paths import EvenPaths
 from .path_solver import PathSolver
 
@@ -124,48 +126,33 @@ class Conduction:
         """Add a multiple of a matrix of the same pattern to the conductivity; a new solver."""
         total = self.conductivity.copy()
         total.axpy(times, matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
-        return replace(
-            self,
-            conductivity=total,
-            factor=conduction_solver(
-                self.spaces,
-                total,
-                self.bath,
-                self.fixed,
-                self.advection,
-                self.even,
-                self.choice,
-                symmetric,
-            ),
-            symmetric=symmetric,
-        )
+        known = self.spaces, total, self.bath, self.fixed, self.advection, self.even
+        factor = conduction_solver(*known, self.choice, symmetric)
+        return replace(self, conductivity=total, factor=factor, symmetric=symmetric)
 
-    def with_bath(self, bath: PETSc.Mat) -> Conduction:
-        """Copy whose solver includes another matrix of heat transfer instead of the bath."""
-        factor = conduction_solver(
-            self.spaces,
-            self.conductivity,
-            bath,
-            self.fixed,
-            self.advection,
-            self.even,
-            self.choice,
-            self.symmetric,
-        )
+    def coupled(self, exchange: PETSc.Mat) -> Conduction:
+        """Copy whose solver includes heat exchange between the bodies instead of the bath [W/K]."""
+        known = self.spaces, self.conductivity, exchange, self.fixed, self.advection, self.even
+        factor = conduction_solver(*known, self.choice, self.symmetric, coupled=True)
         if isinstance(factor, MultigridSolver) and isinstance(self.factor, MultigridSolver):
             factor.iterations = self.factor.iterations  # counted together
-        return replace(self, bath=bath, factor=factor)
+        return replace(self, bath=exchange, factor=factor)
 
-    def with_factor(self) -> Conduction:
-        """Factorised copy for many columns, where single solutions are found by multigrid.
+    def for_columns(self) -> Conduction:
+        """Copy for many columns, where single solutions are found by multigrid: it factorises.
 
         The same if the memory does not suffice. Every rank calls.
         """
         if not self.choice.factorises_heat_columns:
             return self
         known = self.spaces, self.conductivity, self.bath, self.fixed, self.advection, self.even
-        factor = conduction_solver(*known, SolverChoice(), self.symmetric)
+        factor = conduction_solver(*known, SolverChoice(one_at_a_time=True), self.symmetric)
         return replace(self, factor=factor)
+
+    def in_body(self, index: int) -> BodyConduction:
+        """Conduction in one body alone, for heat in it. Every rank calls."""
+        solver = solver_in_body(self.factor, self.spaces, index)
+        return BodyConduction(solver, self.spaces.split(self.fixed)[index], self.symmetric)
 
     def stored_heat(self, rise: np.ndarray) -> np.ndarray:
         """Nodal stored heat [J], owned rows; its sum over all ranks is that of the bodies."""
@@ -252,10 +239,11 @@ def conduction_solver(
     even: EvenPaths | None,
     choice: SolverChoice,
     symmetric: bool | None = None,
+    coupled: bool = False,
 ) -> AnySolver:
     """Solver of conductivity plus bath, rows and columns of prescribed temperatures eliminated.
 
-    Where temperatures are uniform along paths it is direct.
+    Where temperatures are uniform along paths it is direct. `coupled` as in `linear_solver`.
     """
     matrix = conductivity.copy()
     matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
@@ -266,7 +254,7 @@ def conduction_solver(
     matrix.zeroRowsColumns((np.flatnonzero(fixed) + first).astype(PETSc.IntType), diag=1.0)
     if choice.iterative and moving is not None and moving.paths is not None:
         return PathSolver(matrix, spaces, fixed, moving.paths)
-    return linear_solver(choice, matrix, spaces, fixed, known)
+    return linear_solver(choice, matrix, spaces, fixed, known, coupled=coupled)
 
 
 def _column_sums(matrix: PETSc.Mat) -> np.ndarray:

@@ -23,7 +23,7 @@ from ..compiled import assembled_matrix
 from ..direct_solver import multiply
 from ..kinematics import Kinematics
 from ..mechanics.elasticity import Elasticity
-from ..spaces import Spaces, block_diagonal
+from ..spaces import BodyMatrices, Spaces, block_diagonal
 from .conduction import Conduction
 from .heat_equation import ThermalMaterial, conducting
 
@@ -47,22 +47,27 @@ class VaryingProperty:
     Attributes
     ----------
     part : str
-    matrix : petsc4py.PETSc.Mat
-        Matrix of the part at its constant property: conductivity [W/K], or nodal forces of thermal
-        expansion [N/K].
     factor : PropertyMultiplier
     ambient : float
         Ambient temperature [K].
     """
 
     part: str
-    matrix: PETSc.Mat
     factor: PropertyMultiplier
     ambient: float
 
 
+@dataclass(frozen=True)
 class VaryingConductivity(VaryingProperty):
-    """Temperature-dependent conductivity of one part of a body."""
+    """Temperature-dependent conductivity of one part of a body.
+
+    Attributes
+    ----------
+    matrix : petsc4py.PETSc.Mat
+        Conductivity matrix of the part at its constant property [W/K].
+    """
+
+    matrix: PETSc.Mat
 
     def excess(self, rise: np.ndarray) -> np.ndarray:
         """``Θ - T`` at the nodes, for their rise (n_owned,) [K]."""
@@ -73,8 +78,17 @@ class VaryingConductivity(VaryingProperty):
         return self.factor.value(self.ambient + rise) - 1
 
 
+@dataclass(frozen=True)
 class VaryingExpansion(VaryingProperty):
-    """Temperature-dependent thermal expansion of one part of a body."""
+    """Temperature-dependent thermal expansion of one part of a body.
+
+    Attributes
+    ----------
+    matrix : BodyMatrices
+        Nodal forces of its thermal expansion at its constant property [N/K].
+    """
+
+    matrix: BodyMatrices
 
     def excess(self, rise: np.ndarray) -> np.ndarray:
         """Additional rise at the nodes that causes the same strain at constant expansion [K]."""
@@ -139,7 +153,7 @@ def varying_conduction(
             form = conducting(body, kinematics, alone, spaces.degree)
             terms = form(ufl.TrialFunction(space), ufl.TestFunction(space))
             blocks.append(assembled_matrix(terms))
-        parts.append(VaryingConductivity(name, block_diagonal(blocks), factor, ambient))
+        parts.append(VaryingConductivity(name, factor, ambient, block_diagonal(blocks)))
     constant = {field.name: getattr(linear, field.name) for field in fields(Conduction)}
     return VaryingConduction(**constant, parts=tuple(parts))
 
@@ -152,7 +166,7 @@ def varying_expansion(
 ) -> tuple[VaryingExpansion, ...]:
     """Temperature-dependent expansions from factors by part."""
     return tuple(
-        VaryingExpansion(name, elastic.thermal_load(temperatures, only=name), factor, ambient)
+        VaryingExpansion(name, factor, ambient, elastic.thermal_load(temperatures, only=name))
         for name, factor in factors.items()
     )
 
@@ -175,11 +189,11 @@ def straining_rises(
 
 
 def thermal_forces(
-    load: PETSc.Mat, parts: tuple[VaryingExpansion, ...], rise: np.ndarray
+    load: BodyMatrices, parts: tuple[VaryingExpansion, ...], rise: np.ndarray
 ) -> np.ndarray:
     """Nodal forces of a temperature rise (n_owned,), owned rows [N]."""
-    each = [(load, rise), *((part.matrix, part.excess(rise)) for part in parts)]
-    return _products(load.getLocalSize()[0], each)
+    excess = (part.matrix.multiply(part.excess(rise)) for part in parts)
+    return sum(excess, load.multiply(rise))
 
 
 def _columns(matrix: PETSc.Mat, scales: np.ndarray) -> PETSc.Mat:

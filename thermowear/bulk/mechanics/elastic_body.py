@@ -135,18 +135,18 @@ class ElasticBody(ElasticForms):
         return self.factor.solve(without_fixed(loads, self.fixed))
 
     @contextmanager
-    def solver_of_columns(self) -> Iterator[AnySolver]:
-        """Solver for many columns of loads, zero in the fixed values.
+    def solver_of_columns(self) -> Iterator[Callable]:
+        """Function like `solve` for many columns of loads.
 
         Where single loads are solved for by multigrid it is a factor that exists meanwhile, if one
         of this body fits into the memory: a column then costs a hundredth. Every rank calls.
         """
         if not self.choice.factorises_columns:
-            yield self.factor
+            yield self.solve
             return
         factor = DirectSolver(self.matrix, dim=self.body.mesh.topology.dim)
         try:
-            yield factor
+            yield lambda loads: factor.solve(without_fixed(loads, self.fixed))
         finally:
             factor.destroy()
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cached_property
 
 from petsc4py import PETSc
 
@@ -17,10 +17,10 @@ from ..bodies import Bodies
 from ..body_mesh import BodyMesh
 from ..compiled import surface_area
 from ..direct_solver import eliminate
-from ..field import owned, without_fixed
+from ..field import owned
 from ..kinematics import Kinematics
-from ..solver_choice import AnySolver, SolverChoice, linear_solver
-from ..spaces import Spaces, block_diagonal, lagrange_spaces
+from ..solver_choice import SolverChoice, linear_solver
+from ..spaces import BodyMatrices, Spaces, block_diagonal, lagrange_spaces
 from .elastic_body import ElasticBody, ElasticForms, ElasticMaterial
 
 
@@ -76,26 +76,6 @@ class Elasticity:
             found[...] = body.solve(load)
         return result
 
-    def solvers_of_columns(self) -> Iterator[Callable]:
-        """Functions like `solve` for many columns; their results add up to the displacements.
-
-        Bodies that are factorised for this purpose alone are solved by functions of their own, each
-        valid until the next one is asked for. Every rank calls.
-        """
-        if not any(body.choice.factorises_columns for body in self.each):
-            yield self.solve
-            return
-        for index, body in enumerate(self.each):
-            with body.solver_of_columns() as factor:
-                yield partial(self._solved_alone, index, factor)
-
-    def _solved_alone(self, index: int, factor: AnySolver, loads: sp.csr_matrix) -> np.ndarray:
-        """Displacements of one body, zero in the others."""
-        result = np.zeros(loads.shape, order="F")
-        own, found = (self.spaces.split(values)[index] for values in (loads, result))
-        found[...] = factor.solve(without_fixed(own, self.each[index].fixed))
-        return result
-
     def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Support reactions [N], owned rows; zero in the free values."""
         split = self.spaces.split
@@ -114,13 +94,14 @@ class Elasticity:
         """Coordinates of the owned nodes, shape (n_owned / gdim, gdim) [m]."""
         return self.spaces.nodes()
 
-    def thermal_load(self, temperatures: Spaces, only: str | None = None) -> PETSc.Mat:
-        """Matrix of nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N/K].
+    def thermal_load(self, temperatures: Spaces, only: str | None = None) -> BodyMatrices:
+        """Matrices of nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N/K].
 
         Over all bodies, or over the part `only`.
         """
         parts = zip(self.each, temperatures.each, strict=True)
-        return block_diagonal([b.thermal_load(rises, b.space, only) for b, rises in parts])
+        each = tuple(body.thermal_load(rises, body.space, only) for body, rises in parts)
+        return BodyMatrices(each, temperatures)
 
 
 def elasticity(
@@ -128,10 +109,11 @@ def elasticity(
     kinematics: Kinematics,
     degree: int,
     materials: dict[str, ElasticMaterial],
-    clamped: list[str],
+    clamped: Sequence[str],
     symmetric: tuple[str, ...] = (),
     rollers: tuple[str, ...] = (),
     choice: SolverChoice | None = None,
+    mid_plane: tuple[str, ...] = (),
 ) -> Elasticity:
     """Assemble the stiffness and set up its solver, body by body. Every rank calls.
 
@@ -143,17 +125,19 @@ def elasticity(
         Polynomial degree of the displacement.
     materials : dict of str to ElasticMaterial
         Materials by part.
-    clamped : list of str
-        Surfaces fixed in all directions; every body needs one.
+    clamped : sequence of str
+        Surfaces fixed in all directions.
     symmetric : tuple of str
         Surfaces on a plane of symmetry x = const.: the first displacement component vanishes.
     rollers : tuple of str
         Surfaces whose second displacement component vanishes.
     choice : SolverChoice, optional
         Direct by default.
+    mid_plane : tuple of str
+        Surfaces in space whose third displacement component vanishes.
     """
     spaces = lagrange_spaces(bodies, degree, bodies.dim)
-    guided = {0: symmetric, 1: rollers}
+    guided = symmetric, rollers, mid_plane
     each = []
     for body, space in zip(bodies.each, spaces.each, strict=True):
         forms = ElasticForms(body, kinematics, _lame(body, kinematics, materials))
@@ -214,8 +198,8 @@ def fixed_values(body: BodyMesh, kinematics: Kinematics, space, clamped, guided)
         Vector-valued space.
     clamped : sequence of str
         Surfaces fixed in all directions.
-    guided : dict of int to sequence of str
-        Surfaces by the component that they fix.
+    guided : tuple of sequences of str
+        Surfaces that fix the first, the second and the third component.
     """
     mesh = body.mesh
     tdim = mesh.topology.dim
@@ -223,7 +207,7 @@ def fixed_values(body: BodyMesh, kinematics: Kinematics, space, clamped, guided)
     held = np.zeros(owned(space), dtype=bool)
     for component in range(mesh.geometry.dim):
         facets = [body.facets(surface) for surface in clamped]
-        facets += [body.facets(surface) for surface in guided.get(component, ())]
+        facets += [body.facets(surface) for surface in guided[component]]
         if component == 0:
             facets.append(dmesh.locate_entities_boundary(mesh, tdim - 1, kinematics.on_axis))
         nodes = fem.locate_dofs_topological(

@@ -82,6 +82,8 @@ class Geometry(Section):
         Surfaces on a plane of symmetry x = const.
     rollers : tuple of str
         Surfaces that cannot move along y, but freely along x.
+    mid_plane : tuple of str
+        Surfaces in space on planes z = const that cannot move along z, but freely in the plane.
     press_direction : tuple of float
         Unit vector of the load direction of body 1, towards body 2.
     pivot_point : tuple of float or None
@@ -126,6 +128,7 @@ class Geometry(Section):
     from_file: ClassVar[bool] = False
     symmetry: ClassVar[tuple[str, ...]] = ()
     rollers: ClassVar[tuple[str, ...]] = ()
+    mid_plane: ClassVar[tuple[str, ...]] = ()
     press_direction: ClassVar[tuple[float, ...]] = (0.0, -1.0)
     pivot_point: ClassVar[tuple[float, ...] | None] = None
     rotation_center: ClassVar[tuple[float, float] | None] = None
@@ -230,6 +233,11 @@ class Geometry(Section):
         """Surfaces of a body on rollers."""
         held = (self.held, self.fixed)[self.bodies.index(body)]
         return tuple(s for s in self.rollers if s == held or s.startswith(f"{body}_"))
+
+    def mid_plane_of(self, body: str) -> tuple[str, ...]:
+        """Surfaces of a body on planes z = const: of body 1 the held one, of body 2 all others."""
+        first = body == self.bodies[0]
+        return tuple(s for s in self.mid_plane if (s == self.held) is first)
 
     def contact_area(self) -> float | None:
         """Nominal contact area for a mean pressure; None if there is none [m²]."""

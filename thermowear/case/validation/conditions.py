@@ -127,6 +127,7 @@ def surface_pressure(case: Case) -> Iterator[Fault]:
     )
     if case.model == "3d":
         refused |= dict.fromkeys(geometry.rollers, "is on rollers, which cannot be loaded")
+        refused |= dict.fromkeys(geometry.mid_plane, "lies on a mid-plane, which cannot be loaded")
     refused[geometry.fixed] = "is fixed; a pressure on it has no effect"
     for name in load.pressure:
         if name in refused:

@@ -12,7 +12,7 @@ import scipy.sparse as sp
 
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
-from ...bulk.spaces import Spaces
+from ...bulk.spaces import BodyMatrices, Spaces
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
 from .face_nodes import FaceNodes, face_nodes
@@ -20,7 +20,7 @@ from .heat_exchange import InterfaceHeat
 from .pressure import Basis, PressureSpace, scaled
 from .rigid_motion import RigidHolder
 from .thermal_opening import DistortionRows, blocks, elastic_columns
-from .traces import distributed, transpose_product
+from .traces import distributed
 
 
 @dataclass(frozen=True)
@@ -92,7 +92,7 @@ def influence(
     pairing: Pairing,
     trace: sp.csr_matrix,
     basis: Basis,
-    thermal_loads: Sequence[PETSc.Mat] = (),
+    thermal_loads: Sequence[BodyMatrices] = (),
     distortion: DistortionRows | None = None,
 ) -> Influence:
     """Compute the elastic response to every pressure function. Every rank calls.
@@ -108,7 +108,7 @@ def influence(
         Transposed gap trace Bᵀ.
     basis : ndarray or csr_array, shape (n, m)
         Ψ, from `pressure.pressure_basis`.
-    thermal_loads : sequence of petsc4py.PETSc.Mat
+    thermal_loads : sequence of BodyMatrices
         Matrices G of nodal forces per nodal rise, from `Elasticity.thermal_load`.
     distortion : DistortionRows, optional
         Receives the weak gap per nodal rise of the first of them, which is not stored.
@@ -118,15 +118,17 @@ def influence(
     loads = pressure_loads(trace, weighted)
     nodes = np.unique(np.flatnonzero(np.diff(trace.indptr)) // dim)
     touching = (nodes[:, None] * dim + np.arange(dim)).ravel()
-    stored = thermal_loads if distortion is None else ()
     near = np.zeros((len(touching), loads.shape[1]))
-    per_rise = [np.zeros((G.getLocalSize()[1], loads.shape[1]), order="F") for G in stored]
-    for columns, displacements in elastic_columns(elastic, loads):
-        near[:, columns] += displacements[touching]
-        for matrix, products in zip(stored, per_rise, strict=True):
-            products[:, columns] += transpose_product(matrix, displacements)
+    kept = thermal_loads if distortion is None else ()
+    per_rise = [np.zeros((G.columns.owned, loads.shape[1]), order="F") for G in kept]
+    for found in elastic_columns(elastic, loads, thermal_loads):
+        start, end = elastic.spaces.starts[found.body : found.body + 2]
+        inside = slice(*np.searchsorted(touching, (start, end)))
+        near[inside, found.columns] = found.displacements[touching[inside] - start]
+        for matrix, products, product in zip(kept, per_rise, found.per_rise, strict=False):
+            matrix.columns.split(products)[found.body][:, found.columns] = product
         if distortion is not None:
-            distortion.add(columns, transpose_product(thermal_loads[0], displacements))
+            distortion.add(found.body, found.columns, found.per_rise[0])
     comm = elastic.bodies.comm
     return Influence(basis, weighted, trace, touching, near, tuple(per_rise), comm)
 
@@ -163,31 +165,27 @@ def condense_heat(
 
     Every rank calls.
     """
-    comm, conduction = conduction.spaces.comm, conduction.with_factor()
+    comm, conduction = conduction.spaces.comm, conduction.for_columns()
     first, second = (face_nodes(trace, comm) for trace in traces)
-    Φ1, Φ2 = nodal_responses(conduction, (first, second))
+    Φ1, Φ2 = (nodal_response(conduction, face) for face in (first, second))
     at_nodes = (first, second), (Φ1, Φ2), conduction.symmetric
     return InterfaceHeat(weights, basis, traces, shift, partition, *at_nodes)
 
 
-def nodal_responses(conduction: Conduction, faces: Sequence[FaceNodes]) -> list[np.ndarray]:
-    """Rise of the nodes of faces per heat into each of them, shape (n_f, n_f) [K/W].
+def nodal_response(conduction: Conduction, face: FaceNodes) -> np.ndarray:
+    """Rise of the nodes of a face per heat into each of them, shape (n_f, n_f) [K/W].
 
-    The faces belong to bodies that are not coupled by conduction: one solution serves a node of
-    each. Every rank calls.
+    Every rank calls.
     """
-    comm, dim = conduction.spaces.comm, conduction.spaces.dim
-    widest, n_owned = max(face.count for face in faces), len(conduction.fixed)
-    nodes = [face.first + np.arange(len(face.rows)) for face in faces]
-    at = np.concatenate([face.rows for face in faces]), np.concatenate(nodes)
-    heat = sp.csc_matrix((np.ones(len(at[0])), at), shape=(n_owned, widest))
-    found = [np.empty((face.count, face.count), order="F") for face in faces]
-    for columns in blocks(widest, dim):
-        field = conduction.respond(heat[:, columns].tocsr())
-        for face, response in zip(faces, found, strict=True):
-            width = response[:, columns].shape[1]
-            response[:, columns] = np.vstack(comm.allgather(field[face.rows, :width]))
-    return found
+    spaces, index = conduction.spaces, conduction.spaces.body_of(face.rows)
+    body, rows = conduction.in_body(index), face.rows - spaces.starts[index]
+    nodes, n_owned = face.first + np.arange(len(rows)), len(body.fixed)
+    heat = sp.csc_matrix((np.ones(len(rows)), (rows, nodes)), shape=(n_owned, face.count))
+    result = np.empty((face.count, face.count), order="F")
+    for columns in blocks(face.count, spaces.dim):
+        rises = body.respond(heat[:, columns].tocsr())
+        result[:, columns] = np.vstack(spaces.comm.allgather(rises[rows]))
+    return result
 
 
 def bath_matrix(spaces: Spaces, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:

@@ -72,7 +72,7 @@ class CoupledExchange:
         between = (face.traces[0] - face.traces[1]).tocsr()
         exchange = transfer_matrix(conduction.spaces, between, weights * self._direct)
         self._face, self._comm = face, conduction.spaces.comm
-        self._conduction = conduction.with_bath(exchange)
+        self._conduction = conduction.coupled(exchange)
         self._crossing: sp.csr_matrix | None = None
         if not passing_fraction.any():
             return

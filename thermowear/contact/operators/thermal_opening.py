@@ -14,14 +14,13 @@ from petsc4py import PETSc
 import numpy as np
 import scipy.sparse as sp
 
-from ...bulk.direct_solver import multiply
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
+from ...bulk.spaces import BodyMatrices, Spaces
 from ...parallel import sum_over_ranks
 from .exchange_update import ChangedExchange
 from .face_nodes import FaceNodes
 from .heat_exchange import CoupledDistortion, HeatExchange, opened_by
-from .traces import transpose_product
 
 _COLUMNS = {2: 32, 3: 128}
 """Right-hand sides per solution, by dimension; limited by the caches."""
@@ -38,14 +37,61 @@ def blocks(count: int, dim: int, rows: int = 0) -> Iterator[slice]:
     return (slice(start, min(start + size, count)) for start in range(0, count, size))
 
 
-def elastic_columns(elastic: Elasticity, loads: sp.csc_matrix) -> Iterator[tuple]:
-    """Solve for sparse nodal loads (n_owned, m): ranges of columns and displacements, (n_owned, k).
+@dataclass(frozen=True)
+class BodyColumns:
+    """Solutions of one body for a range of pressure functions.
 
-    A range may occur several times; its displacements, of one body each time, are to be added.
+    Attributes
+    ----------
+    body : int
+        Index of the body.
+    columns : slice
+        Range of pressure functions.
+    displacements : ndarray, shape (n_own, width)
+        Displacements of the body [m per coefficient].
+    per_rise : list of ndarray, shape (n_own of the temperature, width)
+        Weak gap per nodal rise of the body, one for each thermal load matrix [m³/K].
     """
-    for solve in elastic.solvers_of_columns():
-        for columns in blocks(loads.shape[1], elastic.bodies.dim, elastic.spaces.total):
-            yield columns, solve(loads[:, columns].tocsr())
+
+    body: int
+    columns: slice
+    displacements: np.ndarray
+    per_rise: list[np.ndarray]
+
+
+def elastic_columns(
+    elastic: Elasticity, loads: sp.csc_matrix, matrices: Sequence[BodyMatrices] = ()
+) -> Iterator[BodyColumns]:
+    """Solve for sparse nodal loads (n_owned, m), body by body. Every rank calls.
+
+    Parameters
+    ----------
+    elastic : Elasticity
+    loads : csc_matrix, shape (n_owned, m)
+    matrices : sequence of BodyMatrices
+        Thermal load matrices.
+    """
+    parts = elastic.spaces.split(loads.tocsr())
+    for index, (body, own) in enumerate(zip(elastic.each, parts, strict=True)):
+        transposed = [matrix.each[index].transpose(PETSc.Mat()) for matrix in matrices]
+        rows, by_columns = Spaces((body.space,)).total, sp.csc_matrix(own)
+        with body.solver_of_columns() as solve:
+            for columns in blocks(loads.shape[1], elastic.bodies.dim, rows):
+                displacements = solve(by_columns[:, columns].tocsr())
+                products = [_product(matrix, displacements) for matrix in transposed]
+                yield BodyColumns(index, columns, displacements, products)
+
+
+def _product(matrix: PETSc.Mat, columns: np.ndarray) -> np.ndarray:
+    """Product of a matrix and dense columns, owned rows. Every rank calls."""
+    sizes = (matrix.getSizes()[1], columns.shape[1])
+    right = PETSc.Mat().createDense(sizes, array=columns, comm=matrix.comm)
+    right.assemble()
+    found = matrix.matMult(right)
+    result = np.array(found.getDenseArray(), order="F")
+    for each in (right, found):
+        each.destroy()
+    return result
 
 
 @dataclass(frozen=True)
@@ -95,7 +141,7 @@ class ThermalOpening:
     elastic : Elasticity
     loads : csc_matrix, shape (n_owned, m)
         Nodal loads Bᵗ w Ψ of the pressure functions.
-    matrices : sequence of petsc4py.PETSc.Mat
+    matrices : sequence of BodyMatrices
         G_k: nodal forces per nodal rise, of all bodies and of temperature-dependent expansions.
     per_rise : tuple of ndarray, shape (n_owned of the temperature, m)
         Weak gap per nodal rise, one for each matrix; empty if it is solved for [m³/K].
@@ -103,7 +149,7 @@ class ThermalOpening:
 
     elastic: Elasticity
     loads: sp.csc_matrix
-    matrices: Sequence[PETSc.Mat]
+    matrices: Sequence[BodyMatrices]
     per_rise: tuple[np.ndarray, ...]
 
     def of(self, rises: Sequence[np.ndarray]) -> np.ndarray:
@@ -119,28 +165,33 @@ class ThermalOpening:
         weak = np.stack(found, axis=1) if found else np.zeros((self.loads.shape[1], 0))
         return sum_over_ranks(comm, weak).reshape(-1, *rises[0].shape[1:])
 
-    def by_columns(self, slopes: Sequence[np.ndarray] = ()) -> Iterator[tuple[slice, np.ndarray]]:
-        """Weak gap per nodal rise, shape (n_owned, width), with its range of pressure functions.
-
-        Those of the same range are to be added, see `elastic_columns`.
+    def by_columns(
+        self, spaces: Spaces, slopes: Sequence[np.ndarray] = ()
+    ) -> Iterator[tuple[int, slice, np.ndarray]]:
+        """Weak gap per nodal rise of a body (n_own, width), with the range of pressure functions.
 
         The rises of the matrices after the first are `slopes` (n_owned,) times that of the first.
         Every rank calls.
+
+        Parameters
+        ----------
+        spaces : Spaces
+            Of the temperatures.
+        slopes : sequence of ndarray
         """
+        slopes_in = list(zip(*map(spaces.split, slopes), strict=True)) or [()] * len(spaces.each)
         if self.per_rise:
-            dim = self.elastic.bodies.dim
-            for columns in blocks(self.loads.shape[1], dim):
-                parts = [response[:, columns] for response in self.per_rise]
-                yield columns, _combined(parts, slopes)
+            for index, split in enumerate(zip(*map(spaces.split, self.per_rise), strict=True)):
+                for columns in blocks(self.loads.shape[1], self.elastic.bodies.dim):
+                    parts = [response[:, columns] for response in split]
+                    yield index, columns, _combined(parts, slopes_in[index])
             return
-        for columns, displacements in elastic_columns(self.elastic, self.loads):
-            used = self.matrices[: 1 + len(slopes)]
-            parts = [transpose_product(matrix, displacements) for matrix in used]
-            yield columns, _combined(parts, slopes)
+        for found in elastic_columns(self.elastic, self.loads, self.matrices[: 1 + len(slopes)]):
+            yield found.body, found.columns, _combined(found.per_rise, slopes_in[found.body])
 
     def _forces(self, rises: Iterable[np.ndarray]) -> np.ndarray:
         pairs = zip(self.matrices, rises, strict=False)
-        return np.sum([multiply(matrix, rise) for matrix, rise in pairs], axis=0)
+        return np.sum([matrix.multiply(rise) for matrix, rise in pairs], axis=0)
 
 
 def _combined(parts: Sequence[np.ndarray], slopes: Sequence[np.ndarray]) -> np.ndarray:
@@ -186,16 +237,23 @@ class DistortionRows:
     """
 
     def __init__(self, conduction: Conduction, faces: tuple[FaceNodes, FaceNodes], count: int):
-        self._conduction, self._faces = conduction.with_factor(), faces
+        self._conduction, self._faces = conduction.for_columns(), faces
+        self._bodies = [conduction.spaces.body_of(face.rows) for face in faces]
         first, second = (np.zeros((count, face.count)) for face in faces)
         self.distortion = ThermalDistortion((first, second))
 
-    def add(self, columns: slice, per_rise: np.ndarray) -> None:
-        """Add the rows of a block from the weak gap per nodal rise, shape (n_owned, width)."""
-        adjoint = self._conduction.adjoint_response(per_rise)
-        comm = self._conduction.spaces.comm
-        for face, rows in zip(self._faces, self.distortion.per_heat, strict=True):
-            rows[columns] += np.vstack(comm.allgather(adjoint[face.rows])).T
+    def add(self, body: int, columns: slice, per_rise: np.ndarray) -> None:
+        """Add the rows of a block from the weak gap per nodal rise of a body, (n_own, width)."""
+        adjoint, spaces = self._conduction.in_body(body).adjoint_response(per_rise), self._spaces
+        faces = zip(self._bodies, self._faces, self.distortion.per_heat, strict=True)
+        for own, face, rows in faces:
+            if own == body:
+                at_face = adjoint[face.rows - spaces.starts[body]]
+                rows[columns] += np.vstack(spaces.comm.allgather(at_face)).T
+
+    @property
+    def _spaces(self) -> Spaces:
+        return self._conduction.spaces
 
 
 def condense_distortion(
@@ -206,6 +264,6 @@ def condense_distortion(
 ) -> ThermalDistortion:
     """Condense the thermal distortion; slopes as in `ThermalOpening`. Every rank calls."""
     rows = DistortionRows(conduction, faces, opening.loads.shape[1])
-    for columns, per_rise in opening.by_columns(slopes):
-        rows.add(columns, per_rise)
+    for body, columns, per_rise in opening.by_columns(conduction.spaces, slopes):
+        rows.add(body, columns, per_rise)
     return rows.distortion

@@ -133,14 +133,3 @@ def gather_rows(spaces: Spaces, index: int, rows, columns, values, n_points: int
     shape = (index_map.size_local * bs, n_points)
     own = sp.coo_matrix((values, (rows - first, columns)), shape=shape)
     return spaces.placed(index, own.tocsr())
-
-
-def transpose_product(matrix: PETSc.Mat, columns: np.ndarray) -> np.ndarray:
-    """Product ``matrixᵀ columns`` by owned rows, shape (n_owned of the matrix's columns, m)."""
-    rows, _ = matrix.getSizes()
-    right = PETSc.Mat().createDense(
-        (rows, columns.shape[1]), array=np.asfortranarray(columns), comm=matrix.comm
-    )
-    right.assemble()
-    result = matrix.transposeMatMult(right)
-    return np.array(result.getDenseArray(), order="F")

@@ -14,7 +14,7 @@ import numpy as np
 from pydantic import model_validator
 
 from ...case.tables.geometry import Geometry, keyed, named
-from ...case.values.section import KeyFault
+from ...case.values.section import KeyFault, Switch
 from ...case.values.units import Angle, Length
 from ..meshing.cells import (
     Claim,
@@ -126,6 +126,12 @@ class DiskSector(PadsOnDisk):
     The pad is a sector centred on the x-axis. The disk rotates about the z-axis and is meshed over
     the full circumference. ``mesh.elements`` is the number along the longer side of the pad; the
     shorter has fewer.
+
+    Attributes
+    ----------
+    hub : bool
+        True if the disk is clamped at its inside, and its middle plane is a plane of symmetry; by
+        default the whole middle plane is clamped.
     """
 
     name = "disk-sector"
@@ -139,6 +145,15 @@ class DiskSector(PadsOnDisk):
     rotation_center = (0.0, 0.0)
 
     type: Literal["disk-sector"]
+    hub: Switch = False
+
+    @keyed
+    def fixed(self) -> str:
+        return "disk_inside" if self.hub else "disk_middle"
+
+    @keyed
+    def mid_plane(self) -> tuple[str, ...]:
+        return ("disk_middle",) if self.hub else ()
 
     @keyed
     def pivot_point(self) -> tuple[float, ...]:

@@ -74,7 +74,8 @@ class DiskBrakeInSpace(Geometry):
     disk_thickness : float
         Thickness of the rubbed ring of the whole disk [m].
     half : bool
-        True if only the upper half of the ring is meshed, with a fixed middle plane.
+        True if only the upper half of the ring is meshed, with its middle plane as a plane of
+        symmetry: of a disk between two equal pads, with a hat on either side.
     hat_radius : float
         Outer radius of the hat, where the ring begins [m].
     hat_height, hat_thickness : float
@@ -88,6 +89,7 @@ class DiskBrakeInSpace(Geometry):
     bodies = ("pad", "disk")
     zones = {"lining": "pad"}
     held = "pad_piston"
+    fixed = "disk_hub"
     press_direction = (0.0, 0.0, -1.0)
     rotation_center = (0.0, 0.0)
 
@@ -192,8 +194,8 @@ class DiskBrakeInSpace(Geometry):
         return *named("pad", "face", "piston", "back", "sides"), *named("disk", *disk)
 
     @keyed
-    def fixed(self) -> str:
-        return "disk_middle" if self.half else "disk_hub"
+    def mid_plane(self) -> tuple[str, ...]:
+        return ("disk_middle",) if self.half else ()
 
     @keyed
     def pivot_point(self) -> tuple[float, ...]:

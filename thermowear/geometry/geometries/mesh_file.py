@@ -36,11 +36,14 @@ _KEYS = {
     "fixed_name": "fixed",
     "symmetry_names": "symmetry",
     "roller_names": "rollers",
+    "mid_plane_names": "mid_plane",
     "rotates_about": "rotation_center",
     "contact_area_given": "contact_area",
     "surface_names": "surfaces",
 }
 """Attributes whose keys are named like properties of every geometry."""
+_IN_SPACE = ("rollers", "mid_plane", "rotation_center")
+"""Keys of bodies in space."""
 
 
 def _cell_sets(value: Any) -> Any:
@@ -79,6 +82,8 @@ class MeshFile(HalvableGeometry):
     symmetry_names, roller_names : tuple of str
         Keys ``symmetry`` and ``rollers``: surfaces on planes of symmetry x = const, and y = const
         in space.
+    mid_plane_names : tuple of str
+        Key ``mid_plane``: surfaces of body 2, or the held one, on planes z = const in space.
     rotates_about : tuple of float or None
         Key ``rotation_center``: x and y of the axis along z that body 2 rotates about in space; by
         default the bodies slide along x [m].
@@ -104,6 +109,7 @@ class MeshFile(HalvableGeometry):
     fixed_name: str = Field(alias="fixed")
     symmetry_names: tuple[str, ...] = Field(alias="symmetry", default=())
     roller_names: tuple[str, ...] = Field(alias="rollers", default=())
+    mid_plane_names: tuple[str, ...] = Field(alias="mid_plane", default=())
     rotates_about: tuple[Coordinate, Coordinate] | None = Field(
         alias="rotation_center", default=None
     )
@@ -144,8 +150,8 @@ class MeshFile(HalvableGeometry):
             raise KeyFault("half", "needs the surfaces on the plane of symmetry: symmetry = [...]")
         if self.symmetry and not self.half:
             raise KeyFault("symmetry", "requires a half model; add half = true")
-        for key, value in {"rollers": self.rollers, "rotation_center": self.rotates_about}.items():
-            if value:
+        for key in _IN_SPACE:
+            if getattr(self, key):
                 raise KeyFault(key, "requires a 3d model")
 
     def _check_space(self) -> None:
@@ -153,14 +159,15 @@ class MeshFile(HalvableGeometry):
             raise KeyFault(
                 "half",
                 "requires a plane model; in space list the surfaces on planes of symmetry: "
-                "symmetry = [...] (x = const), rollers = [...] (y = const)",
+                "symmetry = [...] (x = const), rollers = [...] (y = const), "
+                "mid_plane = [...] (z = const)",
             )
         if "thickness" in self.model_fields_set:
             raise KeyFault("thickness", "requires a plane model")
 
     @model_serializer(mode="wrap")
     def _by_keys(self, handler) -> dict[str, Any]:
-        left_out = {"half", "thickness"} if self._in_space else {"rollers", "rotation_center"}
+        left_out = {"half", "thickness"} if self._in_space else set(_IN_SPACE)
         left_out |= set() if self.paths else {"paths"}
         found = {_KEYS.get(name, name): value for name, value in handler(self).items()}
         return {name: value for name, value in found.items() if name not in left_out}
@@ -171,6 +178,7 @@ class MeshFile(HalvableGeometry):
     symmetry: ClassVar[Any] = keyed(attrgetter("symmetry_names"))
 
     rollers: ClassVar[Any] = keyed(attrgetter("roller_names"))
+    mid_plane: ClassVar[Any] = keyed(attrgetter("mid_plane_names"))
     rotation_center: ClassVar[Any] = keyed(attrgetter("rotates_about"))
 
     @keyed
@@ -266,6 +274,7 @@ class MeshFile(HalvableGeometry):
         uses += [("held", self.held_name, 0), ("fixed", self.fixed_name, 1)]
         uses += [("symmetry", name, None) for name in self.symmetry_names]
         uses += [("rollers", name, None) for name in self.roller_names]
+        uses += [("mid_plane", name, int(name != self.held_name)) for name in self.mid_plane_names]
         uses += [("surfaces", name, None) for name in self.surface_names]
         result: dict[str, Named] = {}
         for use, name, body in uses:

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...case.tables.geometry import Geometry
 from ...errors import CaseError, note
+from ..mesh.held import check_held, free_motions
 from ..mesh.mixed import AnyMesh, block_of, block_with
 from ..mesh.nodes import boundary, components, meeting, numbered
 from ..mesh.tagged import TaggedMesh
@@ -14,8 +15,10 @@ from .solid_checks import CORNERS, at, node_links
 
 _FLUSH = 0.95
 """Least cosine of the angle between facets on both sides of the rim of a hole in one surface."""
-_PLANES = {"symmetry": 0, "rollers": 1}
+_PLANES = {"symmetry": 0, "rollers": 1, "mid_plane": 2}
 """Keys of surfaces on planes, and the coordinate that is constant there."""
+_CUTS_BOTH = ("symmetry", "rollers")
+"""Keys of planes that cut both bodies."""
 
 
 def check_solid_mesh(mesh: AnyMesh, geometry: Geometry) -> None:
@@ -24,8 +27,8 @@ def check_solid_mesh(mesh: AnyMesh, geometry: Geometry) -> None:
     Raises
     ------
     CaseError
-        If surfaces share facets, a contact face branches, a piece of a body is not held, or a
-        surface of symmetry or on rollers does not lie in a plane.
+        If surfaces share facets, a contact face branches, a piece of a body is not held, a surface
+        of symmetry or on rollers does not lie in a plane, or a body is free to move.
     """
     mesh = whole_bodies(mesh, geometry)
     for block in mesh.blocks:
@@ -35,8 +38,11 @@ def check_solid_mesh(mesh: AnyMesh, geometry: Geometry) -> None:
     for body, surface in zip(geometry.bodies, (geometry.held, geometry.fixed), strict=True):
         _check_pieces_held(block_of(mesh, body), body, surface)
     for key, axis in _PLANES.items():
+        _check_planes(mesh, key, getattr(geometry, key), axis)
+    _check_supports(mesh, geometry)
+    for key in _CUTS_BOTH:
         if getattr(geometry, key):
-            _check_planes(mesh, key, getattr(geometry, key), axis)
+            _check_both_cut(mesh, key, getattr(geometry, key))
 
 
 def facet_corners(mesh: TaggedMesh, facets: np.ndarray) -> np.ndarray:
@@ -143,9 +149,9 @@ def _check_pieces_held(mesh: TaggedMesh, body: str, surface: str) -> None:
 
 
 def _check_planes(mesh: AnyMesh, key: str, names: tuple[str, ...], axis: int) -> None:
-    """Check that surfaces lie in planes x or y = const, with the bodies on one side of each."""
+    """Check that surfaces lie in planes x, y or z = const, with the bodies on one side of each."""
     points = mesh.points
-    letter, size = "xy"[axis], np.ptp(points, axis=0).max()
+    letter, size = "xyz"[axis], np.ptp(points, axis=0).max()
     for name in names:
         level = on_surface(mesh, name)[:, axis]
         if np.ptp(level) > LEVEL * size:
@@ -159,6 +165,19 @@ def _check_planes(mesh: AnyMesh, key: str, names: tuple[str, ...], axis: int) ->
                 f"geometry.{key}: the bodies lie on both sides of the plane of {name!r}, "
                 f"{letter} = {level.mean():.6g} m"
             )
+
+
+def _check_supports(mesh: AnyMesh, geometry: Geometry) -> None:
+    """Reject a body that its supports leave free to move."""
+    guided = [getattr(geometry, key) for key in _PLANES]
+    smooth = {name for names in guided for name in names}
+    clamped = [name for name in (geometry.held, geometry.fixed) if name not in smooth]
+    for body in geometry.bodies:
+        check_held(body, free_motions(mesh, [body], clamped, guided))
+
+
+def _check_both_cut(mesh: AnyMesh, key: str, names: tuple[str, ...]) -> None:
+    """Check that each body has a surface on one of the planes of a key."""
     for body in mesh.bodies:
         if not has_any(mesh, body, names):
             raise CaseError(

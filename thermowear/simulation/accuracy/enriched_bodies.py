@@ -54,8 +54,7 @@ class EnrichedBodies:
         elastic, degree = system.elastic, system.model.discretisation.degree
         bodies = elastic.bodies
         surplus = surplus_spaces(bodies, degree, bodies.dim)
-        clamped, symmetric, rollers = supports(system.model)
-        guided = {0: symmetric, 1: rollers}
+        clamped, *guided = supports(system.model)
         held = [
             fixed_values(body, elastic.kinematics, space, clamped, guided)
             for body, space in zip(bodies.each, surplus.each, strict=True)

@@ -97,8 +97,9 @@ def _bodies(case: Case) -> tuple[Body, Body]:
         Body(
             name=name,
             materials={part: _material(case, part) for part in geometry.parts_of(name)},
-            fixed=() if surface in geometry.rollers else (surface,),
+            fixed=() if surface in (*geometry.rollers, *geometry.mid_plane) else (surface,),
             rollers=geometry.rollers_of(name),
+            mid_plane=geometry.mid_plane_of(name),
             surfaces=tuple(s for s in geometry.surfaces if s.startswith(f"{name}_")),
             ring=1 / geometry.sector if name == moving else 1.0,
         )

@@ -16,6 +16,8 @@ from ...contact.operators.rigid_motion import RigidMode, hold, sliding
 from ...contact.operators.traces import gap_trace
 from ...contact.search.face import gather_faces
 from ...contact.search.pairing import Pairing
+from ...geometry.mesh.held import check_held, free_motions
+from ...geometry.mesh.mixed import AnyMesh
 from ...model.model import Model, Zone
 from ...parallel import on_root
 from ...timer import Phases
@@ -127,10 +129,22 @@ def check_contact_points(model: Model, comm) -> None:
 
 
 def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) -> Bodies:
-    mesh = on_root(
-        comm, lambda: model.meshes.mesh(zone) if worn is None else worn.mesh, share=False
-    )
-    return distribute(mesh, comm)
+    def held() -> AnyMesh:
+        mesh = model.meshes.mesh(zone) if worn is None else worn.mesh
+        _check_held(model, mesh)
+        return mesh
+
+    return distribute(on_root(comm, held, share=False), comm)
+
+
+def _check_held(model: Model, mesh: AnyMesh) -> None:
+    """Reject a body that its supports leave free to move."""
+    clamped, *guided = supports(model)
+    for body in model.bodies:
+        free = free_motions(mesh, body.parts, clamped, guided)
+        if model.kinematics == "axisymmetric":
+            free = ["along z" for name in free if name == "along y"]
+        check_held(body.name, free)
 
 
 def _paired(
@@ -165,15 +179,20 @@ def elastic_system(
         for part, m in model.materials.items()
     }
     degree = model.discretisation.degree
-    elastic = elasticity(bodies, kinematics, degree, materials, *supports(model), choice)
+    clamped, symmetric, rollers, mid_plane = supports(model)
+    elastic = elasticity(
+        bodies, kinematics, degree, materials, clamped, symmetric, rollers, choice, mid_plane
+    )
     return elastic, gap_trace(elastic.spaces, pairing)
 
 
-def supports(model: Model) -> tuple[list[str], tuple[str, ...], tuple[str, ...]]:
-    """Clamped surfaces, symmetry planes, and surfaces on rollers."""
-    clamped = [surface for body in model.bodies for surface in body.fixed]
-    rollers = tuple(surface for body in model.bodies for surface in body.rollers)
-    return clamped, model.symmetry, rollers
+def supports(model: Model) -> tuple[tuple[str, ...], ...]:
+    """Clamped surfaces, then those that fix the first, the second and the third component."""
+    clamped, rollers, mid_plane = (
+        tuple(surface for body in model.bodies for surface in getattr(body, kind))
+        for kind in ("fixed", "rollers", "mid_plane")
+    )
+    return clamped, model.symmetry, rollers, mid_plane
 
 
 def sliding_contact(

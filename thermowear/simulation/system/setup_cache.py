@@ -70,9 +70,10 @@ def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
     """Cache keys of a model meshed for a zone (by default the expected contact zone)."""
     interface, materials, heat = model.interface, model.materials, model.heat
     zone = model.expected_zone if zone is None else zone
-    section = model.kinematics, model.thickness, model.sector, model.symmetry
+    section = model.kinematics, model.thickness, model.sector
+    supports = model.symmetry, *((b.fixed, b.rollers, b.mid_plane) for b in model.bodies)
     spaces = model.discretisation.degree, interface.pressure_degree
-    mesh = (section, model.meshes, spaces, zone)
+    mesh = (section, supports, model.meshes, spaces, zone)
     shares = softness_of_parts(model), bool(interface.wearing_in_place)
     points = (mesh, interface.initial_shape, shares)
     strained = {part: (m.young_modulus, m.poisson_ratio) for part, m in materials.items()}

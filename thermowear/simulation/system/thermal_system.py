@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from petsc4py import PETSc
-
 import numpy as np
 
 from ...bulk.bodies import Bodies
@@ -24,7 +22,7 @@ from ...bulk.heat.varying import (
 from ...bulk.kinematics import Kinematics
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.solver_choice import SolverChoice
-from ...bulk.spaces import lagrange_spaces
+from ...bulk.spaces import BodyMatrices, lagrange_spaces
 from ...contact.operators.condensation import bath_matrix, condense_heat
 from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.operators.face_nodes import FaceNodes
@@ -113,7 +111,7 @@ class ThermalSystem:
     Attributes
     ----------
     conduction : Conduction
-    load : petsc4py.PETSc.Mat
+    load : BodyMatrices
         G: nodal forces per nodal rise [N/K].
     loads : ThermalLoads
         Thermal loads beside friction.
@@ -130,7 +128,7 @@ class ThermalSystem:
     """
 
     conduction: Conduction
-    load: PETSc.Mat
+    load: BodyMatrices
     loads: ThermalLoads
     face: InterfaceHeat | CoupledHeat
     ambient: float
@@ -144,7 +142,7 @@ class ThermalSystem:
         return isinstance(self.conduction, VaryingConduction)
 
     @property
-    def load_matrices(self) -> list[PETSc.Mat]:
+    def load_matrices(self) -> list[BodyMatrices]:
         """Nodal forces per nodal rise [N/K]: of all bodies, then of each varying expansion."""
         return [self.load, *(expansion.matrix for expansion in self.expansions)]
 

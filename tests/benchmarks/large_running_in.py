@@ -35,10 +35,10 @@ NAMES = {
     "held": "PAD_BACK",
     "fixed": "DISK_BOTTOM",
 }
-_COARSENING = 0.04
+_COARSENING = 0.0575
 """Growth of the size of the cells with the depth in the disk, relative to that at the contact
 [1/mm]: nearly as many unknowns in both bodies, and 2 000 pressure coefficients at 1 M unknowns."""
-_UNKNOWNS = 0.66e6
+_UNKNOWNS = 0.59e6
 """Displacement unknowns times the cube of the size of the cells at the contact [mm³]; measured."""
 
 

@@ -31,6 +31,7 @@ COEFFICIENT, A, B = (
     f"wear.punch.{key}" for key in ("coefficient", "velocity_exponent", "pressure_exponent")
 )
 END, TIMES = "analysis.end_time", "analysis.output_times"
+POINTWISE = {"contact.method": "pointwise"}
 
 NAMES = [
     Bad("unknown key", {"mesh.elemnts": 4}, "mesh.elemnts", "did you mean elements?"),
@@ -435,6 +436,13 @@ HISTORIES = [
         FRETTING,
     ),
     Bad(
+        "fretting pointwise",
+        POINTWISE,
+        "contact.method",
+        "'pointwise' does not support a fretting analysis",
+        FRETTING,
+    ),
+    Bad(
         "fretting by penalty",
         {"contact.method": "penalty"},
         "contact.method",
@@ -814,6 +822,10 @@ HOLDERS = [
         {"contact.method": "nitsche", "analysis": {"type": "transient", "end_time": "1 s"},
          "wear.disk": {"coefficient": "1e-8 1/MPa", "per": "friction-stress", "spread": "track"}},
         "contact.method", "does not support wear spread over the track", "disk-sector"),
+    Bad("friction pointwise", POINTWISE | {"contact.friction": 0.2}, "contact.method",
+        "'pointwise' does not support friction", HERTZ),
+    Bad("heat pointwise", POINTWISE | {"analysis": {"type": "initial"}}, "contact.method",
+        "'pointwise' does not support heat"),
     Bad("pad all the way and more", {"geometry.pad_angle": "400 deg"},
         "geometry.pad_angle", "at most 360 deg", PADS),
 ]  # fmt: skip

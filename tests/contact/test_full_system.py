@@ -235,6 +235,29 @@ def test_wear_on_the_spot_is_a_compliance(kind):
 
 
 @pytest.mark.parametrize("kind", METHODS)
+def test_a_small_residual_alone_does_not_end_the_iteration(kind):
+    """requirement: a start whose residual is accepted, but whose pressures are off by more."""
+    case = build(2, (12, 12), (3, 3))
+    contact, load = method(case, kind), np.array([3e4])
+    exact = contact.solve(case.bump, load)
+    loading = Loading(
+        case.bump, load, 0 * case.bump, 0 * exact.displacement, thermal_traction=0 * case.bump
+    )
+    noise = np.random.default_rng(1).standard_normal(len(exact.displacement))
+    noise *= 1e-12 * np.abs(exact.displacement).max()
+    noise[case.elastic.fixed] = 0.0
+    off = contact.residual(loading, exact.displacement + noise, exact.motion).relative
+    near = replace(exact, displacement=exact.displacement + 5e-11 / off * noise)
+    start = contact.residual(loading, near.displacement, exact.motion)
+    assert start.relative < 1e-10
+    peak = exact.pressure.max()
+    assert np.abs(np.maximum(start.pressure, 0.0) - exact.pressure).max() > 1e-11 * peak
+    found = contact.solve(case.bump, load, start=near)
+    np.testing.assert_allclose(found.pressure, exact.pressure, rtol=0, atol=2e-12 * peak)
+    assert found.iterations <= 1
+
+
+@pytest.mark.parametrize("kind", METHODS)
 def test_hot_bodies(kind):
     """requirement: thermal stress belongs to the traction. Clamped all round and heated uniformly,
     the faces of rods that just touch press with E α ΔT/(1 - 2ν).

@@ -6,9 +6,15 @@ import thermowear as tw
 from thermowear.verification.cases.contact.contact_methods import HEIGHTS, MODULI, PRESSURE
 from thermowear.verification.cases.contact.patch_in_space import PatchInSpace
 
+CELLS = {
+    "hexahedra": (False, False),
+    "tetrahedra": (True, True),
+    "tetrahedra on hexahedra": (True, False),
+}
+
 
 @pytest.mark.parametrize("theta", [-1, 1])
-@pytest.mark.parametrize("cells", ["hexahedra", "tetrahedra"])
+@pytest.mark.parametrize("cells", list(CELLS))
 @pytest.mark.parametrize(("order", "degree"), [(1, 1), (1, 2), (2, 2)])
 def test_uniform_pressure_is_exact(cells, order, degree, theta):
     """requirement: pressure and approach, by Nitsche's method and by penalty (theta 1), 1e-10."""
@@ -17,9 +23,7 @@ def test_uniform_pressure_is_exact(cells, order, degree, theta):
     contact |= {"theta": theta} if method == "nitsche" else {"penalty": "1e15 Pa/m"}
     tables = {
         "model": "3d",
-        "geometry": PatchInSpace(
-            columns=(2, 3), orders=(order, order), tetrahedra=(cells == "tetrahedra",) * 2
-        ),
+        "geometry": PatchInSpace(columns=(2, 3), orders=(order, order), tetrahedra=CELLS[cells]),
         "mesh": {"degree": degree},
         "bodies": {
             name: {"young_modulus": E, "poisson_ratio": 0.0}

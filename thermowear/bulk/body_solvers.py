@@ -43,8 +43,7 @@ class BodySolvers:
     def of(self, index: int) -> DirectSolver:
         """Solver of one body. Every rank calls."""
         if index not in self._factors:
-            if self._alone:
-                self.destroy()
+            self.release()
             block = self._blocks[index]
             self._factors[index] = DirectSolver(block, self._symmetry, self._spaces.dim)
         return self._factors[index]
@@ -62,6 +61,11 @@ class BodySolvers:
         for index, load in enumerate(self._spaces.split(loads)):
             self._spaces.split(result)[index][...] = self.of(index).solve_transposed(load)
         return result
+
+    def release(self) -> None:
+        """Free the memory of a factor that is not kept anyway."""
+        if self._alone:
+            self.destroy()
 
     def destroy(self) -> None:
         """Free the memory of the factors."""

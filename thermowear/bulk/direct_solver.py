@@ -20,6 +20,10 @@ _FAILURES = {
     'mesh.solver = "multigrid"',
 }
 """Reasons by the error code of MUMPS (INFOG(1))."""
+_TOO_SMALL = -8, -9
+"""Codes of a workspace that was estimated too small."""
+_LARGEST_WORKSPACE = 320
+"""Increase of the estimated workspace that is still tried (ICNTL(14)) [%]."""
 _ORDERINGS = {2: 2, 3: 4}
 """Ordering of MUMPS (ICNTL(7)) by dimension of the mesh. In 2D approximate minimum fill: for 1e4 to
 3e5 unknowns twice as fast as the default of MUMPS, with the same fill. In 3D PORD: for 5e4 to 2e5
@@ -71,6 +75,11 @@ class DirectSolver:
         """Factorise the matrix, again after a change of values with unchanged sparsity pattern."""
         self._solver.getPC().setUp()
         code = self._factored.getMumpsInfog(1)
+        while code in _TOO_SMALL and self._factored.getMumpsIcntl(14) < _LARGEST_WORKSPACE:
+            self._factored.setMumpsIcntl(14, 2 * self._factored.getMumpsIcntl(14))
+            self._solver.setOperators(*self._solver.getOperators())  # to be set up again
+            self._solver.getPC().setUp()
+            code = self._factored.getMumpsInfog(1)
         if code < 0:
             reason = _FAILURES.get(code, "see INFOG(1) in the manual of MUMPS")
             raise ComputationError(f"a matrix cannot be factorised (MUMPS error {code}): {reason}")

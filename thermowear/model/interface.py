@@ -100,8 +100,9 @@ class ContactMethod:
     Attributes
     ----------
     name : str
-        ``"condensed"``: static condensation of the bodies to the interface; ``"penalty"`` and
-        ``"nitsche"``: full system.
+        ``"condensed"``: static condensation of the bodies to the interface; ``"pointwise"``: the
+        same with contact conditions at each point, without wear, heat and friction; ``"penalty"``
+        and ``"nitsche"``: full system.
     penalty : float or None
         Penalty stiffness, by default from the mesh [Pa/m].
     theta : int
@@ -110,7 +111,7 @@ class ContactMethod:
         Stabilisation parameter of Nitsche's method, in units of ``E degree² / h``.
     """
 
-    name: Literal["condensed", "penalty", "nitsche"] = "condensed"
+    name: Literal["condensed", "pointwise", "penalty", "nitsche"] = "condensed"
     penalty: float | None = None
     theta: int = 1
     gamma: float | None = None

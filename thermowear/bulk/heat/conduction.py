@@ -15,7 +15,7 @@ import scipy.sparse as sp
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..body_solvers import solver_in_body
+from ..body_solvers import BodySolvers, solver_in_body
 from ..direct_solver import multiply
 from ..field import without_fixed
 from ..multigrid_solver import MultigridSolver
@@ -148,6 +148,11 @@ class Conduction:
         known = self.spaces, self.conductivity, self.bath, self.fixed, self.advection, self.even
         factor = conduction_solver(*known, SolverChoice(one_at_a_time=True), self.symmetric)
         return replace(self, factor=factor)
+
+    def release(self) -> None:
+        """Free what `for_columns` has factorised, until it is needed again."""
+        if isinstance(self.factor, BodySolvers):
+            self.factor.release()
 
     def in_body(self, index: int) -> BodyConduction:
         """Conduction in one body alone, for heat in it. Every rank calls."""

@@ -100,7 +100,7 @@ class ContactTable(Section):
     friction_history: FactorHistory | None = None
     transverse_friction: Annotated[Number, Field(ge=0.0)] = 0.0
     compliance: units.Compliance | None = None
-    method: Literal["condensed", "penalty", "nitsche"] = "condensed"
+    method: Literal["condensed", "pointwise", "penalty", "nitsche"] = "condensed"
     pressure_degree: Annotated[int | Literal["lobatto"] | None, _PRESSURE_DEGREE] = None
     penalty: units.Foundation | None = None
     theta: Annotated[Literal[1, 0, -1] | None, BeforeValidator(_exact)] = None

@@ -66,7 +66,9 @@ def condensed_only(case: Case) -> Iterator[Fault]:
 def _condensed_features(case: Case) -> Iterator[str]:
     type_, heat = case.analysis.type, case.heat
     own = {"reciprocating": "a reciprocating analysis", "fretting": "sticking"}
-    if type_ in own:
+    if case.contact.method == "pointwise":
+        yield from _beside_pressure(case)
+    elif type_ in own:
         yield own[type_]
     if case.model == "3d" and type_ == "transient" and _passes_disk(case):
         yield "wear spread over the track of a disk in 3d"
@@ -78,6 +80,17 @@ def _condensed_features(case: Case) -> Iterator[str]:
         yield "variable friction, wear or conductance"
     elif heat is not None and any(_factors(case)):
         yield "variable conductivity or expansion"
+
+
+def _beside_pressure(case: Case) -> Iterator[str]:
+    """Everything but the pressure between unworn faces."""
+    contact = case.contact
+    if case.analysis.type != "initial":
+        yield f"a {case.analysis.type} analysis"
+    elif case.heat is not None:
+        yield "heat"
+    elif contact.nominal_friction or contact.transverse_friction:
+        yield "friction"
 
 
 def _passes_disk(case: Case) -> bool:

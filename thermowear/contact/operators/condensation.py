@@ -168,6 +168,7 @@ def condense_heat(
     comm, conduction = conduction.spaces.comm, conduction.for_columns()
     first, second = (face_nodes(trace, comm) for trace in traces)
     Φ1, Φ2 = (nodal_response(conduction, face) for face in (first, second))
+    conduction.release()
     at_nodes = (first, second), (Φ1, Φ2), conduction.symmetric
     return InterfaceHeat(weights, basis, traces, shift, partition, *at_nodes)
 

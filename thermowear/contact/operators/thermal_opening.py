@@ -24,7 +24,7 @@ from .heat_exchange import CoupledDistortion, HeatExchange
 
 _COLUMNS = {2: 32, 3: 128}
 """Right-hand sides per solution, by dimension; limited by the caches."""
-_BLOCK_MEMORY, _LEAST = 3e8, 32
+_BLOCK_MEMORY, _LEAST = 1.5e8, 32
 """Memory of the solutions of a block [bytes], unless it has the least number of columns."""
 _STORED = 0.05
 """Part of the available memory that the response of all temperatures may take."""
@@ -237,7 +237,7 @@ class DistortionRows:
     """
 
     def __init__(self, conduction: Conduction, faces: tuple[FaceNodes, FaceNodes], count: int):
-        self._conduction, self._faces = conduction.for_columns(), faces
+        self._conduction, self._faces, self._count = conduction.for_columns(), faces, count
         self._bodies = [conduction.spaces.body_of(face.rows) for face in faces]
         first, second = (np.zeros((count, face.count)) for face in faces)
         self.distortion = ThermalDistortion((first, second))
@@ -250,6 +250,8 @@ class DistortionRows:
             if own == body:
                 at_face = adjoint[face.rows - spaces.starts[body]]
                 rows[columns] += np.vstack(spaces.comm.allgather(at_face)).T
+        if columns.stop == self._count:  # the body is done
+            self._conduction.release()
 
     @property
     def _spaces(self) -> Spaces:

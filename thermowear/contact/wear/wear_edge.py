@@ -201,7 +201,7 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     basis = np.hstack([dense(contact.basis[:, whole]), split])
     weighted = weights[:, None] * basis
     own = np.zeros((basis.shape[1],) * 2)
-    yielding = (weights * _shortest_compliance(contact))[:, None] * left
+    yielding = (weights * shortest_compliance(contact))[:, None] * left
     own[len(whole) :, len(whole) :] = left.T @ yielding
     return EdgeSpace(
         points=points,
@@ -214,7 +214,7 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     )
 
 
-def _shortest_compliance(contact: CondensedContact) -> np.ndarray:
+def shortest_compliance(contact: CondensedContact) -> np.ndarray:
     """Compliance ε of the shortest pressure waves at the points, shape (n,) [m/Pa].
 
     Estimated by the diagonal of the stiffness A⁻¹, in which the soft long waves count little.

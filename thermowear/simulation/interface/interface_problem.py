@@ -17,6 +17,7 @@ from .contact_solver import ContactSolution, ContactSolver
 from .fixed_point import Trial, self_consistent
 from .full_method import FullMethod
 from .growing_edge import GrowingEdge
+from .pointwise_method import PointwiseMethod
 from .sdirk import InterfaceState, WearProblem
 from .steady import SteadyState
 
@@ -56,10 +57,7 @@ class InterfaceProblem(WearProblem):
     def _in_steady_heat(
         self, worn: np.ndarray, time: float, pointwise: np.ndarray | None = None
     ) -> InterfaceState:
-        """Contact of faces with given wear and the steady temperatures of its friction heat.
-
-        The points that exchange heat are found by fixed-point iteration.
-        """
+        """Contact of faces with given wear, in the steady temperatures of its heat (iterated)."""
         heat = None if self.heat is None else self.heat.steps.steady
 
         def respond(conditions: InterfaceConditions) -> InterfaceState:
@@ -293,8 +291,10 @@ def interface_problem(
     note : callable, optional
         Called with a warning about settings that may impair the solution.
     """
-    if system.model.interface.method.name == "condensed":
-        return InterfaceProblem(system, CondensedMethod(system), friction_heat(system))
+    own = {"condensed": CondensedMethod, "pointwise": PointwiseMethod}
+    method = own.get(system.model.interface.method.name)
+    if method is not None:
+        return InterfaceProblem(system, method(system), friction_heat(system))
     with system.phases("contact operators"):
-        method = FullMethod(system, note)
-    return InterfaceProblem(system, method, friction_heat(system))
+        full = FullMethod(system, note)
+    return InterfaceProblem(system, full, friction_heat(system))

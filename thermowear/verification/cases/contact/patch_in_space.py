@@ -21,13 +21,15 @@ from ...check import Check
 from .contact_methods import HEIGHTS, METHODS, patch_checks
 
 SIZE = (0.04, 0.03)
+CHECKED = (*METHODS, "pointwise")
 FACES = (("matching", (3, 3)), ("not matching", (2, 3)))
 """Label, and number of elements along x of each body; along y one fewer."""
 DISCRETISATIONS = ((1, 1), (1, 2), (2, 2))
 """Orders of the cells, and degrees of the displacement."""
 MIXED = (("tetrahedra", "hexahedra"), ("hexahedra", "tetrahedra"))
 MIXED_ORDERS = ((1, 1), (1, 2), (2, 2))
-"""Cells of the upper and lower body where they differ, and their orders."""
+MIXED_COLUMNS = (4, 3), (2, 3)
+"""Cells of the upper and lower body where they differ, their orders, and elements along x."""
 
 
 class PatchInSpace(Geometry):
@@ -90,18 +92,21 @@ def _distorted(points: np.ndarray, on_faces: bool) -> np.ndarray:
 def patch_3d() -> Iterator[Check]:
     """Pressure at every point, and approach, for Poisson's ratio 0."""
     for method, cells, (order, degree), (faces, columns) in itertools.product(
-        METHODS, ("hexahedra", "tetrahedra"), DISCRETISATIONS, FACES
+        CHECKED, ("hexahedra", "tetrahedra"), DISCRETISATIONS, FACES
     ):
         geometry = PatchInSpace(
             columns=columns, orders=(order, order), tetrahedra=(cells == "tetrahedra",) * 2
         )
         note = f"{cells} of order {order}, degree {degree}, {faces}"
         yield from patch_checks(geometry, "3d", method, degree, note, 1e-10)
-    for method, (upper, lower), orders in itertools.product(METHODS, MIXED, MIXED_ORDERS):
+    for method, (upper, lower), orders, columns in itertools.product(
+        CHECKED, MIXED, MIXED_ORDERS, MIXED_COLUMNS
+    ):
         geometry = PatchInSpace(
-            columns=(4, 3),
+            columns=columns,
             orders=orders,
             tetrahedra=(upper == "tetrahedra", lower == "tetrahedra"),
         )
         cells = f"{upper} of order {orders[0]} on {lower} of order {orders[1]}"
-        yield from patch_checks(geometry, "3d", method, max(orders), cells, 1e-10)
+        note = f"{cells}, {columns[0]} on {columns[1]} columns"
+        yield from patch_checks(geometry, "3d", method, max(orders), note, 1e-10)

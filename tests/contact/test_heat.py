@@ -18,7 +18,7 @@ from thermowear.contact.operators.condensation import (
     influence,
     pressure_loads,
 )
-from thermowear.contact.operators.heat import baseline_response
+from thermowear.contact.operators.heat_exchange import baseline_response
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.thermal_opening import ThermalOpening, condense_distortion

@@ -12,7 +12,7 @@ from thermowear.bulk.kinematics import Axisymmetric, Spatial
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.condensation import bath_matrix, condense_heat
 from thermowear.contact.operators.exchange_update import ReferenceExchange
-from thermowear.contact.operators.heat import baseline_response
+from thermowear.contact.operators.heat_exchange import baseline_response
 from thermowear.contact.operators.pressure import dense, pressure_basis
 from thermowear.contact.operators.thermal_opening import ThermalDistortion
 from thermowear.contact.operators.traces import value_trace

@@ -15,8 +15,7 @@ from petsc4py import PETSc
 import numpy as np
 
 from .bodies import Bodies
-from .body_solvers import BodySolvers
-from .direct_solver import DirectSolver
+from .direct_solver import BodySolvers, DirectSolver
 from .field import reference_element
 from .multigrid_solver import MultigridSolver
 from .spaces import Spaces
@@ -198,4 +197,4 @@ def linear_solver(
         return MultigridSolver(matrix, spaces, fixed, coarse, symmetric=symmetry == "definite")
     if coupled or len(spaces.each) == 1:
         return DirectSolver(matrix, symmetry, dim=spaces.dim)
-    return BodySolvers(matrix, spaces, symmetry, choice.one_at_a_time)
+    return BodySolvers(matrix, spaces.starts, symmetry, spaces.dim, choice.one_at_a_time)

@@ -15,8 +15,8 @@ import scipy.sparse as sp
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..body_solvers import BodySolvers, solver_in_body
-from ..direct_solver import multiply
+from ..body_solvers import solver_in_body
+from ..direct_solver import BodySolvers, multiply
 from ..field import without_fixed
 from ..multigrid_solver import MultigridSolver
 from ..solver_choice import AnySolver, SolverChoice, linear_solver

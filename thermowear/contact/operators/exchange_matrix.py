@@ -6,6 +6,10 @@ from typing import TypeAlias
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.linalg.lapack import dgetrf
+
+from ...errors import ComputationError
+from .heat import NO_HEAT_SINK
 
 _REGULARITY = 1e-12
 """Regularisation of an infinite resistance, relative to that of the bodies: keeps heat flux
@@ -131,3 +135,34 @@ def coupling_matrix(
         ],
         format="csr",
     )
+
+
+def factorised(
+    coupling: sp.csr_array, response: tuple[np.ndarray, np.ndarray]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Triangular factors with pivots of the unknowns: ``I - Φ N``, and ``-N`` of the jumps.
+
+    Parameters
+    ----------
+    coupling : csr_array
+        See `coupling_matrix`.
+    response : tuple of ndarray, shape (n_f, n_f)
+        See `InterfaceHeat`.
+
+    Raises
+    ------
+    ComputationError
+        If a heated body has no heat sink.
+    """
+    Φ1, Φ2 = response
+    start, end = len(Φ1), len(Φ1) + len(Φ2)
+    matrix = np.empty(coupling.shape, order="F")
+    matrix[:start] = Φ1 @ coupling[:start]
+    matrix[start:end] = Φ2 @ coupling[start:end]
+    matrix[end:] = coupling[end:].toarray()
+    np.negative(matrix, out=matrix)
+    matrix[np.arange(end), np.arange(end)] += 1.0
+    factor, pivots, singular = dgetrf(matrix, overwrite_a=1)
+    if singular:
+        raise ComputationError(NO_HEAT_SINK)
+    return factor, pivots

@@ -8,21 +8,74 @@ both faces by a sparse matrix. The points themselves only carry values.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg.lapack import dgetrf, dgetrs
+from scipy.linalg.lapack import dgetrs
 
-from ...errors import ComputationError
+from ...parallel import sum_over_ranks
 from .exchange_matrix import (
+    Division,
     coupling_matrix,
+    divided,
+    factorised,
     jump_scale,
     scaled_functions,
 )
 from .face_nodes import FaceNodes
-from .heat import NO_HEAT_SINK, BaselineResponse, FaceHeat, ThermalState
+from .heat import BaselineResponse, ThermalState
+from .pressure import Basis
+
+
+@dataclass(frozen=True)
+class FaceHeat:
+    """Heat at the contact points, and its exchange between the faces.
+
+    Attributes
+    ----------
+    weights : ndarray, shape (n,)
+        Areas of the points [m²].
+    basis : ndarray or csr_array, shape (n, m)
+        Basis Ψ of the exchanged heat in perfect contact.
+    traces : tuple of csr_matrix, shape (n_owned, n)
+        Transposed trace Eᵀ of each face.
+    shift : float
+        Heat transfer to a bath at ambient included in the factorised conduction on both faces, and
+        subtracted again here [W/(m² K)].
+    partition : float or ndarray, shape (n,)
+        Fraction of the friction heat released on body 1.
+    """
+
+    weights: np.ndarray
+    basis: Basis
+    traces: tuple[sp.csr_matrix, sp.csr_matrix]
+    shift: float
+    partition: float | np.ndarray
+
+    def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
+        """Nodal heat of the contact [W], owned rows; heat of the bath included on request."""
+        shift = self.shift if bath else 0.0
+        first, second = (
+            trace @ (self.weights * (flux + shift * rise))
+            for trace, rise, flux in zip(self.traces, state.rise, state.flux, strict=True)
+        )
+        return first + second
+
+    def state(
+        self, rise: tuple[np.ndarray, np.ndarray], friction_heat: np.ndarray, crossing: np.ndarray
+    ) -> ThermalState:
+        """State by the rises [K], and friction heat and heat from body 2 to 1 (n,) [W/m²]."""
+        f = self.partition
+        return ThermalState(
+            rise, (f * friction_heat + crossing, (1 - f) * friction_heat - crossing)
+        )
+
+    def divided(self, conductance: np.ndarray) -> Division:
+        """Divide conductances (n,) into parts that are finite and well scaled."""
+        return divided(conductance, self.shift * self.basis.shape[1])
 
 
 @dataclass(frozen=True)
@@ -106,7 +159,7 @@ class HeatExchange:
         self.coupling = coupling_matrix(
             face.weights, functions, face.values, self.division, face.shift
         )
-        self._factor = _factorised(self._matrix())
+        self._factor = factorised(self.coupling, face.response)
 
     @cached_property
     def _crossing(self) -> sp.csr_array:
@@ -180,27 +233,6 @@ class HeatExchange:
         start, end = self._splits
         return values[:start], values[start:end], values[end:]
 
-    def _matrix(self) -> np.ndarray:
-        """Matrix of the unknowns: ``I - Φ N``, and ``-N`` in the rows of the jumps."""
-        first, second, jump = self._parts(self.coupling)
-        matrix = np.empty(self.coupling.shape, order="F")
-        start, end = self._splits
-        Φ1, Φ2 = self.face.response
-        matrix[:start] = Φ1 @ first
-        matrix[start:end] = Φ2 @ second
-        matrix[end:] = jump.toarray()
-        np.negative(matrix, out=matrix)
-        matrix[np.arange(end), np.arange(end)] += 1.0
-        return matrix
-
-
-def _factorised(matrix: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Triangular factors of a matrix (overwritten) with pivots."""
-    factor, pivots, singular = dgetrf(matrix, overwrite_a=1)
-    if singular:
-        raise ComputationError(NO_HEAT_SINK)
-    return factor, pivots
-
 
 @dataclass(frozen=True)
 class CoupledDistortion:
@@ -235,3 +267,24 @@ class CoupledDistortion:
             return result
         first, second = self.change
         return result + first @ (second @ loads)
+
+
+def at_faces(
+    rise: np.ndarray, traces: tuple[sp.csr_matrix, sp.csr_matrix], comm
+) -> tuple[np.ndarray, np.ndarray]:
+    """Values of a nodal rise (n_owned,) at the points of both faces, shape (n,) each."""
+    first, second = (sum_over_ranks(comm, trace.T @ rise) for trace in traces)
+    return first, second
+
+
+def baseline_response(
+    rise: np.ndarray, traces: tuple[sp.csr_matrix, sp.csr_matrix], comm, opening=None
+) -> BaselineResponse:
+    """Response of the faces to a nodal rise (n_owned,), with the weak gap opened by it."""
+    return BaselineResponse(at_faces(rise, traces, comm), opening)
+
+
+def opened_by(per_rise: Sequence[np.ndarray], rises: Sequence[np.ndarray], comm) -> np.ndarray:
+    """Weak gap (m,) opened by nodal rises (n_owned,), each with its gap per rise (n_owned, m)."""
+    pairs = zip(per_rise, rises, strict=False)
+    return sum_over_ranks(comm, sum(response.T @ rise for response, rise in pairs))

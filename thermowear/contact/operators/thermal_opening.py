@@ -20,7 +20,7 @@ from ...bulk.spaces import BodyMatrices, Spaces
 from ...parallel import sum_over_ranks
 from .exchange_update import ChangedExchange
 from .face_nodes import FaceNodes
-from .heat_exchange import CoupledDistortion, HeatExchange
+from .heat_exchange import CoupledDistortion, HeatExchange, opened_by
 
 _COLUMNS = {2: 32, 3: 128}
 """Right-hand sides per solution, by dimension; limited by the caches."""
@@ -269,9 +269,3 @@ def condense_distortion(
     for body, columns, per_rise in opening.by_columns(conduction.spaces, slopes):
         rows.add(body, columns, per_rise)
     return rows.distortion
-
-
-def opened_by(per_rise: Sequence[np.ndarray], rises: Sequence[np.ndarray], comm) -> np.ndarray:
-    """Weak gap (m,) opened by nodal rises (n_owned,), each with its gap per rise (n_owned, m)."""
-    pairs = zip(per_rise, rises, strict=False)
-    return sum_over_ranks(comm, sum(response.T @ rise for response, rise in pairs))

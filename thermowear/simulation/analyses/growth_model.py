@@ -14,8 +14,7 @@ from petsc4py import PETSc
 
 import numpy as np
 
-from ...contact.operators.heat import at_faces
-from ...contact.operators.heat_exchange import HeatExchange
+from ...contact.operators.heat_exchange import HeatExchange, at_faces
 from ...laws.stability import LoadFree, PerturbationMatrices, Rate
 from ...parallel import sum_over_ranks
 from ..heat.heat_steps import HeatSteps

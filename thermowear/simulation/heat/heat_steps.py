@@ -12,10 +12,15 @@ import numpy as np
 from ...bulk.heat.conduction import Conduction
 from ...contact.operators.condensation import condense_heat
 from ...contact.operators.coupled_heat import AnyFace
-from ...contact.operators.heat import BaselineResponse, ThermalState, baseline_response
-from ...contact.operators.heat_exchange import CoupledDistortion, InterfaceHeat
+from ...contact.operators.heat import BaselineResponse, ThermalState
+from ...contact.operators.heat_exchange import (
+    CoupledDistortion,
+    InterfaceHeat,
+    baseline_response,
+    opened_by,
+)
 from ...contact.operators.pressure import scaled
-from ...contact.operators.thermal_opening import ThermalDistortion, opened_by
+from ...contact.operators.thermal_opening import ThermalDistortion
 from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions

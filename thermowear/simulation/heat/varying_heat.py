@@ -14,7 +14,8 @@ import numpy as np
 
 from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.varying import VaryingExpansion
-from ...contact.operators.heat import BaselineResponse, ThermalState, baseline_response
+from ...contact.operators.heat import BaselineResponse, ThermalState
+from ...contact.operators.heat_exchange import baseline_response
 from ...errors import ComputationError
 from ..system.conditions import InterfaceConditions
 from ..system.system import System

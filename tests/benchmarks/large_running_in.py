@@ -76,7 +76,7 @@ def case_tables(mesh: Path, options: argparse.Namespace) -> dict:
     if options.conductance != "perfect":
         heat["conductance"] = f"{options.conductance} W/(m^2 K)"
     analysis: dict = {"type": "transient", "max_steps": options.steps}
-    analysis |= {"until": "steady"} if options.until_steady else {"end_time": "1e6 s"}
+    analysis |= {"until": "steady"} if options.until_steady else {"end_time": "3e6 s"}
     metal = {"young_modulus": "110 GPa", "poisson_ratio": 0.3, "expansion": "1.1e-5 1/K"}
     pad = {"young_modulus": "1 GPa", "poisson_ratio": 0.25, "expansion": "1.4e-5 1/K"}
     return {

@@ -31,3 +31,26 @@ def test_a_singular_matrix_is_an_error_in_words(symmetry):
     """requirement: no factor, no solution: exit code 2 and the reason."""
     with pytest.raises(ComputationError, match=r"cannot be factorised.*singular"):
         DirectSolver(petsc(np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 2.0]])), symmetry)
+
+
+@pytest.mark.parametrize("symmetry", ["symmetric", "none"])
+def test_a_workspace_that_is_too_small_is_enlarged(symmetry):
+    """requirement: where rows are exchanged and the estimate is too small, the solution is found
+    with a larger workspace.
+    """
+    random, n = np.random.default_rng(1), 1000
+    inner, links = (sp.random(n, m, 0.02, random_state=random) for m in (n, n // 2))
+    inner = 1e-8 * (inner @ inner.T) + 1e-9 * sp.eye(n)
+    links = links + sp.eye(n, n // 2)
+    matrix = sp.block_array([[inner, links], [links.T, None]], format="csr")
+    load, tried = random.random(matrix.shape[0]), []
+
+    class WithoutReserve(DirectSolver):
+        def _prepare(self, workspace=0):
+            tried.append(workspace)
+            super()._prepare(workspace)
+
+    factor = WithoutReserve(petsc(matrix), symmetry)
+    found = factor.solve(load)
+    assert np.abs(matrix @ found - load).max() < 1e-10 * np.abs(found).max()
+    assert len(tried) > 1

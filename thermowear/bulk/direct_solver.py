@@ -21,10 +21,11 @@ _FAILURES = {
     'mesh.solver = "multigrid"',
 }
 """Reasons by the error code of MUMPS (INFOG(1))."""
+_TYPES = PETSc.PC.Type.CHOLESKY, PETSc.PC.Type.LU
 _TOO_SMALL = -8, -9
 """Codes of a workspace that was estimated too small."""
-_LARGEST_WORKSPACE = 320
-"""Increase of the estimated workspace that is still tried (ICNTL(14)) [%]."""
+_LARGER = 50, 200, 1000
+"""Increases of the estimated workspace that are then tried (ICNTL(14)); 20 or so at first [%]."""
 _ORDERINGS = {2: 2, 3: 4}
 """Ordering of MUMPS (ICNTL(7)) by dimension of the mesh. In 2D approximate minimum fill: for 1e4 to
 3e5 unknowns twice as fast as the default of MUMPS, with the same fill. In 3D PORD: for 5e4 to 2e5
@@ -57,30 +58,38 @@ class DirectSolver:
         if symmetry != "none":
             matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
             matrix.setOption(PETSc.Mat.Option.SPD, symmetry == "definite")
-        self._comm = matrix.comm
+        self._comm, self._matrix = matrix.comm, matrix
         self._rows = matrix.getSizes()[0]
+        self._factorises = _TYPES[symmetry == "none"], _ORDERINGS[dim]
+        self._prepare()
+        self.repeat()
+
+    def _prepare(self, workspace: int | None = None) -> None:
+        """Set MUMPS up, with an increase of the estimated workspace [%] other than its own."""
+        type_, ordering = self._factorises
         self._solver = PETSc.KSP().create(self._comm)
-        self._solver.setOperators(matrix)
+        self._solver.setOperators(self._matrix)
         self._solver.setType(PETSc.KSP.Type.PREONLY)
         preconditioner = self._solver.getPC()
-        type_ = PETSc.PC.Type.LU if symmetry == "none" else PETSc.PC.Type.CHOLESKY
         preconditioner.setType(type_)
         preconditioner.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
         preconditioner.setFactorSetUpSolverType()
         self._factored = preconditioner.getFactorMatrix()
-        self._factored.setMumpsIcntl(7, _ORDERINGS[dim])
+        self._factored.setMumpsIcntl(7, ordering)
         self._factored.setMumpsIcntl(27, _COLUMNS)
-        self.repeat()
+        if workspace is not None:
+            self._factored.setMumpsIcntl(14, workspace)
 
     def repeat(self) -> None:
         """Factorise the matrix, again after a change of values with unchanged sparsity pattern."""
         self._solver.getPC().setUp()
-        code = self._factored.getMumpsInfog(1)
-        while code in _TOO_SMALL and self._factored.getMumpsIcntl(14) < _LARGEST_WORKSPACE:
-            self._factored.setMumpsIcntl(14, 2 * self._factored.getMumpsIcntl(14))
-            self._solver.setOperators(*self._solver.getOperators())  # to be set up again
+        for workspace in _LARGER:
+            if self._factored.getMumpsInfog(1) not in _TOO_SMALL:
+                break
+            self.destroy()
+            self._prepare(workspace)
             self._solver.getPC().setUp()
-            code = self._factored.getMumpsInfog(1)
+        code = self._factored.getMumpsInfog(1)
         if code < 0:
             reason = _FAILURES.get(code, "see INFOG(1) in the manual of MUMPS")
             raise ComputationError(f"a matrix cannot be factorised (MUMPS error {code}): {reason}")

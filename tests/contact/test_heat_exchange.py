@@ -138,7 +138,7 @@ def test_changed_exchange_equals_a_new_one(faces, monkeypatch, before, after, sy
     """
     monkeypatch.setattr("thermowear.contact.operators.exchange_update._CHANGED", 1.0)
     pairing, conducting, at_points = faces
-    face = replace(condense_heat(conducting, *at_points), symmetric=symmetric)
+    face = condense_heat(replace(conducting, symmetric=symmetric), *at_points)
     x, made = pairing.points[:, 0], friction_heat(pairing)
     closed = CONDUCTANCES[before](pairing.points)
     limit = np.quantile(x, 0.4)

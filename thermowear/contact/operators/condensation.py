@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 from petsc4py import PETSc
@@ -15,11 +16,12 @@ from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.spaces import BodyMatrices, Spaces
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
-from .face_nodes import FaceNodes, face_nodes
+from .face_nodes import face_nodes
 from .heat_exchange import InterfaceHeat
+from .nodal_responses import NodalResponses
 from .pressure import Basis, PressureSpace, scaled
 from .rigid_motion import RigidHolder
-from .thermal_opening import DistortionRows, blocks, elastic_columns
+from .thermal_opening import DistortionRows, elastic_columns
 from .traces import distributed
 
 
@@ -160,33 +162,15 @@ def condense_heat(
     traces: tuple[sp.csr_matrix, sp.csr_matrix],
     shift: float,
     partition: float | np.ndarray,
+    phases: Callable = nullcontext,
 ) -> InterfaceHeat:
     """Condense conduction to the nodes of the contact faces; parameters as in `InterfaceHeat`.
 
-    Every rank calls.
+    The solutions follow when they are first needed, see `NodalResponses`. Every rank calls.
     """
-    comm, conduction = conduction.spaces.comm, conduction.for_columns()
-    first, second = (face_nodes(trace, comm) for trace in traces)
-    Φ1, Φ2 = (nodal_response(conduction, face) for face in (first, second))
-    conduction.release()
-    at_nodes = (first, second), (Φ1, Φ2), conduction.symmetric
-    return InterfaceHeat(weights, basis, traces, shift, partition, *at_nodes)
-
-
-def nodal_response(conduction: Conduction, face: FaceNodes) -> np.ndarray:
-    """Rise of the nodes of a face per heat into each of them, shape (n_f, n_f) [K/W].
-
-    Every rank calls.
-    """
-    spaces, index = conduction.spaces, conduction.spaces.body_of(face.rows)
-    body, rows = conduction.in_body(index), face.rows - spaces.starts[index]
-    nodes, n_owned = face.first + np.arange(len(rows)), len(body.fixed)
-    heat = sp.csc_matrix((np.ones(len(rows)), (rows, nodes)), shape=(n_owned, face.count))
-    result = np.empty((face.count, face.count), order="F")
-    for columns in blocks(face.count, spaces.dim):
-        rises = body.respond(heat[:, columns].tocsr())
-        result[:, columns] = np.vstack(spaces.comm.allgather(rises[rows]))
-    return result
+    first, second = (face_nodes(trace, conduction.spaces.comm) for trace in traces)
+    responses = NodalResponses(conduction, (first, second), phases)
+    return InterfaceHeat(weights, basis, traces, shift, partition, (first, second), responses)
 
 
 def bath_matrix(spaces: Spaces, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:

@@ -27,6 +27,7 @@ from .exchange_matrix import (
 )
 from .face_nodes import FaceNodes
 from .heat import BaselineResponse, ThermalState
+from .nodal_responses import NodalResponses
 from .pressure import Basis
 
 
@@ -85,15 +86,24 @@ class InterfaceHeat(FaceHeat):
     Attributes
     ----------
     nodes : tuple of FaceNodes
-    response : tuple of ndarray, shape (n_f, n_f)
-        Φ: nodal rise per nodal heat on each face, the bath included [K/W].
-    symmetric : bool
-        True if these are symmetric.
+    responses : NodalResponses
     """
 
     nodes: tuple[FaceNodes, FaceNodes]
-    response: tuple[np.ndarray, np.ndarray]
-    symmetric: bool
+    responses: NodalResponses
+
+    @property
+    def response(self) -> tuple[np.ndarray, np.ndarray]:
+        """Φ: nodal rise per nodal heat on each face, the bath included, shape (n_f, n_f) [K/W].
+
+        Every rank calls.
+        """
+        return self.responses.each
+
+    @property
+    def symmetric(self) -> bool:
+        """True if these are symmetric."""
+        return self.responses.symmetric
 
     def exchange(self, conductance: np.ndarray) -> HeatExchange:
         """Couple the faces by a conductance (n,), infinite in perfect contact, see `divided`."""

@@ -14,6 +14,7 @@ from petsc4py import PETSc
 import numpy as np
 import scipy.sparse as sp
 
+from ...bulk.column_blocks import blocks
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.spaces import BodyMatrices, Spaces
@@ -22,19 +23,8 @@ from .exchange_update import ChangedExchange
 from .face_nodes import FaceNodes
 from .heat_exchange import CoupledDistortion, HeatExchange, opened_by
 
-_COLUMNS = {2: 32, 3: 128}
-"""Right-hand sides per solution, by dimension; limited by the caches."""
-_BLOCK_MEMORY, _LEAST = 1.5e8, 32
-"""Memory of the solutions of a block [bytes], unless it has the least number of columns."""
 _STORED = 0.05
 """Part of the available memory that the response of all temperatures may take."""
-
-
-def blocks(count: int, dim: int, rows: int = 0) -> Iterator[slice]:
-    """Ranges of columns of a number of rows that are solved for together, in a dimension `dim`."""
-    fitting = int(_BLOCK_MEMORY / (8 * max(rows, 1)))
-    size = min(_COLUMNS[dim], max(fitting, _LEAST))
-    return (slice(start, min(start + size, count)) for start in range(0, count, size))
 
 
 @dataclass(frozen=True)

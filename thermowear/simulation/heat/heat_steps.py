@@ -293,6 +293,5 @@ class HeatSteps:
 
     def _condense(self, conduction: Conduction) -> InterfaceHeat:
         """Conduction of a time step or a tangent condensed to the interface; every rank calls."""
-        f = self._thermal.face
-        with self._system.phases("condense conduction"):
-            return condense_heat(conduction, f.weights, f.basis, f.traces, f.shift, f.partition)
+        f, phases = self._thermal.face, self._system.phases
+        return condense_heat(conduction, f.weights, f.basis, f.traces, f.shift, f.partition, phases)

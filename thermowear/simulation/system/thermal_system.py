@@ -199,8 +199,7 @@ def thermal_system(
     if coupled_without_condensation(choice, len(pairing.weights)):
         face = CoupledHeat(*at_points, conducting)
     else:
-        with phases("condense conduction"):
-            face = condense_heat(conducting, *at_points)
+        face = condense_heat(conducting, *at_points, phases)
     diffusivity = max(m.conductivity / (m.capacity or np.inf) for m in materials.values())
     initial = 0.0 if heat.initial is None else heat.initial - heat.ambient
     return ThermalSystem(

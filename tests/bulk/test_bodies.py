@@ -3,8 +3,9 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
-from thermowear.bulk.bodies import distribute
+from thermowear.bulk.bodies import bisected, distribute
 from thermowear.compat import geometry_dofmap
 
 from ..contact.solids import COMM, two_solids
@@ -27,3 +28,16 @@ def test_cells_in_the_order_of_the_tagged_mesh():
         ((middles, tags),) = found
         np.testing.assert_allclose(middles, tagged.points[tagged.cells].mean(axis=1), atol=1e-15)
         np.testing.assert_array_equal(tags, tagged.cell_tags)
+
+
+@pytest.mark.parametrize("parts", [1, 2, 3, 4])
+def test_points_are_bisected_into_equal_compact_parts(parts):
+    """requirement: parts of equal numbers, cut across the longest side: of a bar along z, ranges
+    of z in order.
+    """
+    points = np.random.default_rng(0).random((1201, 3)) * [1.0, 1.0, 10.0]
+    part = bisected(points, parts)
+    assert np.ptp(np.bincount(part, minlength=parts)) <= 1
+    in_order = part[np.argsort(points[:, 2])]
+    assert np.array_equal(in_order, np.sort(part))
+    assert len(bisected(points[:0], parts)) == 0

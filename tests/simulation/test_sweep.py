@@ -84,9 +84,9 @@ def test_what_needs_no_new_factor(changes, factors):
     assert grouped([first, second]) == [[0, 1]]
     series = Series()
     run_in(series, first)
-    assert len(factors) == 3  # elasticity of either body, and conduction
+    assert len(factors) == 4  # elasticity and conduction of either body
     result = run_in(series, second)
-    assert len(factors) == 3
+    assert len(factors) == 4
     same(result, tw.run(second))
 
 
@@ -108,7 +108,7 @@ def test_cooling_needs_new_conduction_only(change, factors):
     series = Series()
     run_in(series, first)
     result = run_in(series, second)
-    assert len(factors) == 3 + (first.heat != second.heat)
+    assert len(factors) == 4 + 2 * (first.heat != second.heat)
     same(result, tw.run(second))
 
 
@@ -126,7 +126,7 @@ def test_what_shares_nothing(change, factors):
     series = Series()
     run_in(series, first)
     result = run_in(series, second)
-    assert len(factors) == 6
+    assert len(factors) == 8
     same(result, tw.run(second))
 
 

@@ -18,7 +18,7 @@ from thermowear.contact.operators.condensation import (
     influence,
     pressure_loads,
 )
-from thermowear.contact.operators.heat_exchange import baseline_response
+from thermowear.contact.operators.heat_exchange import FaceHeat, baseline_response
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.thermal_opening import ThermalOpening, condense_distortion
@@ -46,12 +46,12 @@ def interface(degree, columns, partition=0.5, given=None, cooling=None):
     )
     spaces = lagrange_spaces(bodies, degree)
     traces = tuple(value_trace(spaces, side) for side in pairing.sides)
-    shift = 1000.0
-    bath = bath_matrix(spaces, traces, pairing.weights, shift)
+    shifts = 1000.0, 300.0
+    bath = bath_matrix(spaces, traces, pairing.weights, shifts)
     given = {"upper_end": 0.0, "lower_end": 0.0} if given is None else given
     conducting = conduction(bodies, Axisymmetric(), spaces, MATERIALS, cooling or {}, given, bath)
     basis = pressure_basis(pairing, max(degree - 1, 1))
-    face = condense_heat(conducting, pairing.weights, basis, traces, shift, partition)
+    face = condense_heat(conducting, FaceHeat(pairing.weights, basis, traces, shifts, partition))
     still = conducting.solve(np.zeros(len(conducting.fixed)))
     return bodies, pairing, conducting, basis, face, baseline_response(still, traces, COMM)
 

@@ -12,7 +12,7 @@ from thermowear.bulk.kinematics import Axisymmetric, Spatial
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.condensation import bath_matrix, condense_heat
 from thermowear.contact.operators.exchange_update import ReferenceExchange
-from thermowear.contact.operators.heat_exchange import baseline_response
+from thermowear.contact.operators.heat_exchange import FaceHeat, baseline_response
 from thermowear.contact.operators.pressure import dense, pressure_basis
 from thermowear.contact.operators.thermal_opening import ThermalDistortion
 from thermowear.contact.operators.traces import value_trace
@@ -24,7 +24,7 @@ from .solids import COMM, two_solids
 
 MATERIALS = {"upper": ThermalMaterial(50.0, 3e6), "lower": ThermalMaterial(15.0, 2e6)}
 COOLING = {"upper_end": 300.0, "lower_end": 2000.0}
-SHIFT, STEP = 1000.0, 7.0
+SHIFTS, STEP = (1000.0, 300.0), 7.0
 CASES = ["section", "tetrahedron", "hexahedron"]
 CONDUCTANCES = {
     "apart": lambda x: np.zeros(len(x)),
@@ -49,11 +49,11 @@ def faces(request):
     pairing = pair(*sides, kinematics, degree + 2)
     spaces = lagrange_spaces(bodies, degree)
     traces = tuple(value_trace(spaces, side) for side in pairing.sides)
-    bath = bath_matrix(spaces, traces, pairing.weights, SHIFT)
+    bath = bath_matrix(spaces, traces, pairing.weights, SHIFTS)
     conducting = conduction(bodies, kinematics, spaces, MATERIALS, COOLING, {}, bath)
     basis = pressure_basis(pairing, degree - 1)
     partition = np.linspace(0.2, 0.7, len(pairing.weights))
-    return pairing, conducting, (pairing.weights, basis, traces, SHIFT, partition)
+    return pairing, conducting, (pairing.weights, basis, traces, SHIFTS, partition)
 
 
 def array(matrix):
@@ -101,7 +101,7 @@ def test_nodes_equal_both_bodies(faces, kind, step):
     pairing, conducting, at_points = faces
     if step is not None:
         conducting = conducting.implicit_euler(step)
-    face = condense_heat(conducting, *at_points)
+    face = condense_heat(conducting, FaceHeat(*at_points))
     random = np.random.default_rng(1)
     heat, functional = random.random((2, len(conducting.fixed)))
     made, h = friction_heat(pairing), CONDUCTANCES[kind](pairing.points)
@@ -138,7 +138,7 @@ def test_changed_exchange_equals_a_new_one(faces, monkeypatch, before, after, sy
     """
     monkeypatch.setattr("thermowear.contact.operators.exchange_update._CHANGED", 1.0)
     pairing, conducting, at_points = faces
-    face = condense_heat(replace(conducting, symmetric=symmetric), *at_points)
+    face = condense_heat(replace(conducting, symmetric=symmetric), FaceHeat(*at_points))
     x, made = pairing.points[:, 0], friction_heat(pairing)
     closed = CONDUCTANCES[before](pairing.points)
     limit = np.quantile(x, 0.4)
@@ -165,6 +165,6 @@ def test_changed_exchange_equals_a_new_one(faces, monkeypatch, before, after, sy
 def test_heat_in_perfect_contact_of_more_points_is_no_change(faces):
     """requirement: where functions of crossing heat are missing, the exchange is made anew."""
     pairing, conducting, at_points = faces
-    face = condense_heat(conducting, *at_points)
+    face = condense_heat(conducting, FaceHeat(*at_points))
     partly = CONDUCTANCES["partly"](pairing.points)
     assert ReferenceExchange(face, partly).changed(np.full(len(partly), inf)) is None

@@ -9,7 +9,7 @@ from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.condensation import bath_matrix, condense, condense_heat
-from thermowear.contact.operators.heat_exchange import baseline_response
+from thermowear.contact.operators.heat_exchange import FaceHeat, baseline_response
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace, value_trace
@@ -175,12 +175,15 @@ def test_two_slabs_with_friction_heat(h, divisions, place, cell_type):
     pairing = pair(*faces, Spatial(), 4)
     spaces = lagrange_spaces(bodies, 2)
     traces = tuple(value_trace(spaces, side) for side in pairing.sides)
-    shift, materials = 1000.0, {"upper": ThermalMaterial(50.0), "lower": ThermalMaterial(15.0)}
-    bath = bath_matrix(spaces, traces, pairing.weights, shift)
+    shifts, materials = (
+        (1000.0, 300.0),
+        {"upper": ThermalMaterial(50.0), "lower": ThermalMaterial(15.0)},
+    )
+    bath = bath_matrix(spaces, traces, pairing.weights, shifts)
     cold = {"upper_end": 0.0, "lower_end": 0.0}
     conducting = conduction(bodies, Spatial(), spaces, materials, {}, cold, bath)
     basis = pressure_basis(pairing, 1)
-    face = condense_heat(conducting, pairing.weights, basis, traces, shift, 0.3)
+    face = condense_heat(conducting, FaceHeat(pairing.weights, basis, traces, shifts, 0.3))
     resting = baseline_response(np.zeros(len(conducting.fixed)), traces, bodies.comm)
     made = np.full(len(pairing.weights), 1e5)
     state = face.exchange(np.full(len(made), h)).state(made, resting)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from contextlib import nullcontext
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from petsc4py import PETSc
@@ -17,7 +16,7 @@ from ...bulk.spaces import BodyMatrices, Spaces
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
 from .face_nodes import face_nodes
-from .heat_exchange import InterfaceHeat
+from .heat_exchange import FaceHeat, InterfaceHeat
 from .nodal_responses import NodalResponses
 from .pressure import Basis, PressureSpace, scaled
 from .rigid_motion import RigidHolder
@@ -121,9 +120,9 @@ def influence(
     nodes = np.unique(np.flatnonzero(np.diff(trace.indptr)) // dim)
     touching = (nodes[:, None] * dim + np.arange(dim)).ravel()
     near = np.zeros((len(touching), loads.shape[1]))
-    kept = thermal_loads if distortion is None else ()
+    kept, used = (thermal_loads,) * 2 if distortion is None else ((), thermal_loads[:1])
     per_rise = [np.zeros((G.columns.owned, loads.shape[1]), order="F") for G in kept]
-    for found in elastic_columns(elastic, loads, thermal_loads):
+    for found in elastic_columns(elastic, loads, used):
         start, end = elastic.spaces.starts[found.body : found.body + 2]
         inside = slice(*np.searchsorted(touching, (start, end)))
         near[inside, found.columns] = found.displacements[touching[inside] - start]
@@ -155,27 +154,23 @@ def condense(
     return influence(elastic, pairing, trace, basis).condensed(traction, holder)
 
 
-def condense_heat(
-    conduction: Conduction,
-    weights: np.ndarray,
-    basis: Basis,
-    traces: tuple[sp.csr_matrix, sp.csr_matrix],
-    shift: float,
-    partition: float | np.ndarray,
-    phases: Callable = nullcontext,
-) -> InterfaceHeat:
-    """Condense conduction to the nodes of the contact faces; parameters as in `InterfaceHeat`.
+def condense_heat(conduction: Conduction, face: FaceHeat) -> InterfaceHeat:
+    """Condense conduction to the nodes of the contact faces.
 
     The solutions follow when they are first needed, see `NodalResponses`. Every rank calls.
     """
-    first, second = (face_nodes(trace, conduction.spaces.comm) for trace in traces)
-    responses = NodalResponses(conduction, (first, second), phases)
-    return InterfaceHeat(weights, basis, traces, shift, partition, (first, second), responses)
+    first, second = (face_nodes(trace, conduction.spaces.comm) for trace in face.traces)
+    responses = NodalResponses(conduction, (first, second))
+    at_points = face.weights, face.basis, face.traces, face.shifts, face.partition
+    return InterfaceHeat(*at_points, (first, second), responses)
 
 
-def bath_matrix(spaces: Spaces, traces, weights: np.ndarray, shift: float) -> PETSc.Mat:
-    """Matrix ``Σ E_iᵀ w s E_i`` of the bath at both faces, for `bulk.conduction`; collective."""
-    first, second = (transfer_matrix(spaces, trace, weights * shift) for trace in traces)
+def bath_matrix(
+    spaces: Spaces, traces, weights: np.ndarray, shifts: tuple[float, float]
+) -> PETSc.Mat:
+    """Matrix ``Σ E_iᵀ w s_i E_i`` of the bath at both faces, for `bulk.conduction`; collective."""
+    faces = zip(traces, shifts, strict=True)
+    first, second = (transfer_matrix(spaces, trace, weights * shift) for trace, shift in faces)
     first.axpy(1.0, second, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     return first
 

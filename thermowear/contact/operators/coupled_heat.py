@@ -103,7 +103,7 @@ class CoupledExchange:
             T1, T2 = self._at_faces(self._load @ multipliers)
             return self._jump @ (T1 - T2) + self._resisted @ multipliers
 
-        conductance = np.maximum(self._direct, self._face.shift)
+        conductance = np.maximum(self._direct, max(self._face.shifts))
         schur = self._jump @ sp.diags(1 / conductance) @ self._crossing + self._resisted
         shape, factor = schur.shape, splu(schur.tocsc())
         found, failed = (cg if self._conduction.symmetric else gmres)(

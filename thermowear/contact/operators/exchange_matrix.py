@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -15,14 +16,16 @@ _REGULARITY = 1e-12
 """Regularisation of an infinite resistance, relative to that of the bodies: keeps heat flux
 functions independent that differ only where no heat crosses."""
 _MAX_DIRECT_RATIO = 10.0
-"""Largest conductance treated point by point, relative to that of a layer of the bodies as thick as
-the support of a basis function."""
+"""Largest conductance treated point by point, relative to that of the better conducting body."""
+_MAX_DIRECT_CONTRAST = 1e4
+"""Largest conductance treated point by point, relative to that of the less conducting body: the
+rounding error of equal temperatures, times the conductance, is heat that enters this body."""
 
 Division: TypeAlias = "tuple[np.ndarray, np.ndarray, np.ndarray]"
 """Parts of a conductance at the points, see `divided`."""
 
 
-def divided(conductance: np.ndarray, bodies: float) -> Division:
+def divided(conductance: np.ndarray, bodies: Sequence[float]) -> Division:
     """Divide conductances (n,) into parts that are finite and well scaled.
 
     Up to a conductance ``k``, a multiple of that of the bodies, heat crosses point by point:
@@ -38,8 +41,8 @@ def divided(conductance: np.ndarray, bodies: float) -> Division:
     ----------
     conductance : ndarray, shape (n,)
         [W/(m² K)]
-    bodies : float
-        Conductance of a layer of the bodies as thick as the support of a basis function.
+    bodies : sequence of float
+        Conductance of a layer of each body as thick as the support of a basis function.
 
     Returns
     -------
@@ -50,7 +53,7 @@ def divided(conductance: np.ndarray, bodies: float) -> Division:
     resistance : ndarray, shape (n,)
         Resistance ``η r η`` of the unknowns [m² K/W].
     """
-    limit = _MAX_DIRECT_RATIO * bodies
+    limit = min(_MAX_DIRECT_RATIO * max(bodies), _MAX_DIRECT_CONTRAST * min(bodies))
     direct = np.minimum(conductance, limit)
     passing_fraction, blocked_fraction = _parts(limit, conductance - direct)
     resistance = blocked_fraction * (passing_fraction + _REGULARITY * blocked_fraction) / limit
@@ -108,7 +111,7 @@ def coupling_matrix(
     functions: sp.csr_array,
     values: tuple[sp.csr_array, sp.csr_array],
     division: Division,
-    shift: float,
+    shifts: tuple[float, float],
 ) -> sp.csr_array:
     """Matrix N: heat into the nodes of both faces, and weak temperature jumps.
 
@@ -120,17 +123,18 @@ def coupling_matrix(
         See `jump_scale`.
     functions : csr_array, shape (n, n_z)
         See `scaled_functions`.
-    shift : float
-        Heat transfer to the bath [W/(m² K)].
+    shifts : tuple of float
+        Heat transfer of each face to the bath [W/(m² K)].
     """
     (direct, passing_fraction, resistance), (P1, P2), w = division, values, weights
-    bath, across = sp.diags_array(w * (shift - direct)), sp.diags_array(w * direct)
+    bath_1, bath_2 = (sp.diags_array(w * (shift - direct)) for shift in shifts)
+    across = sp.diags_array(w * direct)
     C1, C2 = (P.T @ sp.diags_array(w * passing_fraction) @ functions for P in values)
     resisted = functions.T @ sp.diags_array(w * resistance) @ functions
     return sp.block_array(
         [
-            [P1.T @ bath @ P1, P1.T @ across @ P2, C1],
-            [P2.T @ across @ P1, P2.T @ bath @ P2, -C2],
+            [P1.T @ bath_1 @ P1, P1.T @ across @ P2, C1],
+            [P2.T @ across @ P1, P2.T @ bath_2 @ P2, -C2],
             [C1.T, -C2.T, resisted],
         ],
         format="csr",

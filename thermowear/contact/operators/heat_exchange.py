@@ -43,9 +43,9 @@ class FaceHeat:
         Basis Ψ of the exchanged heat in perfect contact.
     traces : tuple of csr_matrix, shape (n_owned, n)
         Transposed trace Eᵀ of each face.
-    shift : float
-        Heat transfer to a bath at ambient included in the factorised conduction on both faces, and
-        subtracted again here [W/(m² K)].
+    shifts : tuple of float
+        Heat transfer of each face to a bath at ambient, of the order of its body, included in the
+        factorised conduction and subtracted again here [W/(m² K)].
     partition : float or ndarray, shape (n,)
         Fraction of the friction heat released on body 1.
     """
@@ -53,15 +53,15 @@ class FaceHeat:
     weights: np.ndarray
     basis: Basis
     traces: tuple[sp.csr_matrix, sp.csr_matrix]
-    shift: float
+    shifts: tuple[float, float]
     partition: float | np.ndarray
 
     def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
         """Nodal heat of the contact [W], owned rows; heat of the bath included on request."""
-        shift = self.shift if bath else 0.0
+        shifts = self.shifts if bath else (0.0, 0.0)
+        faces = zip(self.traces, shifts, state.rise, state.flux, strict=True)
         first, second = (
-            trace @ (self.weights * (flux + shift * rise))
-            for trace, rise, flux in zip(self.traces, state.rise, state.flux, strict=True)
+            trace @ (self.weights * (flux + shift * rise)) for trace, shift, rise, flux in faces
         )
         return first + second
 
@@ -76,7 +76,7 @@ class FaceHeat:
 
     def divided(self, conductance: np.ndarray) -> Division:
         """Divide conductances (n,) into parts that are finite and well scaled."""
-        return divided(conductance, self.shift * self.basis.shape[1])
+        return divided(conductance, [shift * self.basis.shape[1] for shift in self.shifts])
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,7 @@ class HeatExchange:
         )
         functions = scaled_functions(face.functions, self.scale)
         self.coupling = coupling_matrix(
-            face.weights, functions, face.values, self.division, face.shift
+            face.weights, functions, face.values, self.division, face.shifts
         )
         self._factor = factorised(self.coupling, face.response)
 
@@ -209,9 +209,9 @@ class HeatExchange:
         if baseline is None:
             return loads
         (T1, T2), face = baseline.rise, self.face
-        w, s, across = face.weights, face.shift, self.division[0] * (T2 - T1)
+        w, (s1, s2), across = face.weights, face.shifts, self.division[0] * (T2 - T1)
         one, two = (values.T for values in face.values)
-        heat = one @ (w * (s * T1 + across)), two @ (w * (s * T2 - across))
+        heat = one @ (w * (s1 * T1 + across)), two @ (w * (s2 * T2 - across))
         return loads + np.concatenate([*heat, self._crossing.T @ (w * (T1 - T2))])
 
     def solved(self, friction_heat: np.ndarray, baseline: BaselineResponse | None = None):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from contextlib import nullcontext
 from functools import cached_property
 
 import numpy as np
@@ -23,17 +21,10 @@ class NodalResponses:
     ----------
     conduction : Conduction
     faces : tuple of FaceNodes
-    phases : callable
-        Context of the solutions by name of the phase, see `timer.Phases`.
     """
 
-    def __init__(
-        self,
-        conduction: Conduction,
-        faces: tuple[FaceNodes, FaceNodes],
-        phases: Callable = nullcontext,
-    ):
-        self._conduction, self._faces, self._phases = conduction, faces, phases
+    def __init__(self, conduction: Conduction, faces: tuple[FaceNodes, FaceNodes]):
+        self._conduction, self._faces = conduction, faces
 
     @property
     def symmetric(self) -> bool:
@@ -43,10 +34,9 @@ class NodalResponses:
     @cached_property
     def each(self) -> tuple[np.ndarray, np.ndarray]:
         """Φ: nodal rise per nodal heat on each face, shape (n_f, n_f) [K/W]. Every rank calls."""
-        with self._phases("condense conduction"):
-            conduction = self._conduction.for_columns()
-            first, second = (_nodal_response(conduction, face) for face in self._faces)
-            conduction.release()
+        conduction = self._conduction.for_columns()
+        first, second = (_nodal_response(conduction, face) for face in self._faces)
+        conduction.release()
         return first, second
 
 

@@ -164,7 +164,7 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
         ]
         for body in bodies.each
     ]
-    shifts = dict.fromkeys(model.interface.faces, thermal.face.shift)
+    shifts = dict(zip(model.interface.faces, thermal.face.shifts, strict=True))
     bath = [transferring(body, kinematics, shifts) for body in bodies.each]
     given, _ = given_rises(bodies, surplus, dict.fromkeys(heat.temperature, 0.0), None)
     return EnrichedProblem(

@@ -212,5 +212,6 @@ class TransientHistory(AnalysisHistory[Moment]):
         return self._pressing[1]
 
     def _mean(self, values: np.ndarray) -> float:
-        """Area mean over the face."""
-        return float(np.average(values, weights=self.loop.now.system.weights))
+        """Area mean over the face; of equal values that value, without rounding."""
+        least = values.min()
+        return float(least + np.average(values - least, weights=self.loop.now.system.weights))

@@ -101,16 +101,23 @@ class StoredHeat:
 class HeatOperators:
     """Linear conduction condensed to the interface: steady, or over a time step of one size.
 
-    The last exchange and compliance are kept, as conditions seldom change. No reference to the heat
-    steps: a cycle of references would keep it in memory after its mesh has been discarded.
+    The last exchange and compliance are kept. No reference to the heat steps: a cycle of references
+    would keep it in memory after its mesh has been discarded.
     """
 
     def __init__(self, system: System, conduction: Conduction, face: AnyFace):
         self.conduction, self.face, self._system = conduction, face, system
         method, condensed = system.model.interface.method.name, isinstance(face, InterfaceHeat)
         self.distorts = method == "condensed" and condensed
-        self._exchanges = ExchangeCache(face)
         self._last: tuple[bytes, KnownExchange] | None = None
+
+    @cached_property
+    def _exchanges(self) -> ExchangeCache:
+        """Exchanges of the faces, to whose nodes conduction is condensed first."""
+        if isinstance(self.face, InterfaceHeat):
+            with self._system.phases("condense conduction"):
+                _ = self.face.response
+        return ExchangeCache(self.face)
 
     @cached_property
     def slopes(self) -> list[np.ndarray]:
@@ -233,7 +240,9 @@ class HeatSteps:
     def operators_within(self, step: float) -> Any:
         """Operators for an implicit Euler step of a size [s]; every rank calls."""
         conduction = self._thermal.conduction.implicit_euler(step)
-        return HeatOperators(self._system, conduction, self._condense(conduction))
+        return HeatOperators(
+            self._system, conduction, condense_heat(conduction, self._thermal.face)
+        )
 
     def after(self, before: StoredHeat | None, step: float, time: float) -> HeatStep:
         """Conduction after an Euler step [s], steady without stored heat; every rank calls."""
@@ -263,8 +272,7 @@ class HeatSteps:
         nodal = face.nodal_heat(faces, bath=False) + load.heat - (content - before.content) / step
         lost = sum(conduction.losses(rise, nodal, load.ambient))
         made = float(face.weights @ friction_heat)
-        outside = conduction.exchanged_heat(rise, nodal, load.ambient)
-        exchanged = made + load.magnitude + outside
+        exchanged = made + load.magnitude + conduction.exchanged_heat(rise, nodal, load.ambient)
         largest = max(before.largest, float(np.abs(faces.rise).max()), self.largest(rise))
         turnover = before.turnover + step * np.array([made + load.prescribed, lost, exchanged])
         return StoredHeat(rise, content, turnover, largest)
@@ -290,8 +298,3 @@ class HeatSteps:
         """Conduction at one time, with nodal heat without the contact and an initial rise."""
         baseline = operators.baseline(operators.rise(load, supplied))
         return HeatStep(operators, load, supplied, baseline)
-
-    def _condense(self, conduction: Conduction) -> InterfaceHeat:
-        """Conduction of a time step or a tangent condensed to the interface; every rank calls."""
-        f, phases = self._thermal.face, self._system.phases
-        return condense_heat(conduction, f.weights, f.basis, f.traces, f.shift, f.partition, phases)

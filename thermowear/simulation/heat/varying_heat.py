@@ -14,6 +14,7 @@ import numpy as np
 
 from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.varying import VaryingExpansion
+from ...contact.operators.condensation import condense_heat
 from ...contact.operators.heat import BaselineResponse, ThermalState
 from ...contact.operators.heat_exchange import baseline_response
 from ...errors import ComputationError
@@ -219,4 +220,6 @@ class VaryingHeatSteps(HeatSteps):
     def _tangent(self, rise: np.ndarray, step: float | None) -> TangentOperators:
         """Operators linearised at a rise (n_owned,), steady or of a time step; every rank calls."""
         conduction = self._thermal.conduction.tangent(rise, step)
-        return TangentOperators(self._system, conduction, self._condense(conduction), rise)
+        return TangentOperators(
+            self._system, conduction, condense_heat(conduction, self._thermal.face), rise
+        )

@@ -26,7 +26,7 @@ from ...bulk.spaces import BodyMatrices, lagrange_spaces
 from ...contact.operators.condensation import bath_matrix, condense_heat
 from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.operators.face_nodes import FaceNodes
-from ...contact.operators.heat_exchange import InterfaceHeat
+from ...contact.operators.heat_exchange import FaceHeat, InterfaceHeat
 from ...contact.operators.traces import value_trace
 from ...contact.search.pairing import Pairing
 from ...laws.time_course import TimeFunction
@@ -174,12 +174,13 @@ def thermal_system(
         upper, lower = pairing.sides
         traces = (value_trace(spaces, upper), value_trace(spaces, lower))
         materials = conducting_parts(model)
-        shift = max(_conductivities(model, heat, materials)) / pairing.extent
+        first, second = _conductivities(model, heat, materials)
+        shifts = first / pairing.extent, second / pairing.extent
         given = {
             name: temperature_at(value, 0.0) - heat.ambient
             for name, value in heat.temperature.items()
         }
-        bath = bath_matrix(spaces, traces, pairing.weights, shift)
+        bath = bath_matrix(spaces, traces, pairing.weights, shifts)
         conducting = conduction(
             bodies,
             kinematics,
@@ -195,11 +196,11 @@ def thermal_system(
         loads = thermal_loads(model, heat, bodies, kinematics, conducting)
         conducting, expansions = _varying(model, heat, conducting, elastic, materials)
     face: InterfaceHeat | CoupledHeat
-    at_points = pairing.weights, basis, traces, shift, partition
+    at_points = pairing.weights, basis, traces, shifts, partition
     if coupled_without_condensation(choice, len(pairing.weights)):
         face = CoupledHeat(*at_points, conducting)
     else:
-        face = condense_heat(conducting, *at_points, phases)
+        face = condense_heat(conducting, FaceHeat(*at_points))
     diffusivity = max(m.conductivity / (m.capacity or np.inf) for m in materials.values())
     initial = 0.0 if heat.initial is None else heat.initial - heat.ambient
     return ThermalSystem(
@@ -234,11 +235,15 @@ def _varying(
 
 
 def _conductivities(model: Model, heat: Heat, materials: dict[str, ThermalMaterial]) -> list[float]:
-    """Conductivities of all parts at the ambient temperature, tables included [W/(m K)]."""
-    factors = [model.materials[part].conductivity_factor for part in materials]
+    """Largest conductivity of each body at the ambient temperature, tables included [W/(m K)]."""
+    factors = {part: model.materials[part].conductivity_factor for part in materials}
+    at_ambient = {
+        part: 1.0 if factor is None else float(factor.value(heat.ambient))
+        for part, factor in factors.items()
+    }
     return [
-        material.conductivity * (1.0 if factor is None else float(factor.value(heat.ambient)))
-        for material, factor in zip(materials.values(), factors, strict=True)
+        max(materials[part].conductivity * at_ambient[part] for part in body.parts)
+        for body in model.bodies
     ]
 
 

@@ -67,3 +67,15 @@ def test_outflow_equals_the_heat_put_in():
     put_in = conducting.spaces.comm.allreduce(heat.sum())
     assert net == pytest.approx(put_in, rel=1e-10)
     assert turnover >= abs(net) * (1 - 1e-12)
+
+
+def test_each_surface_is_cooled_by_its_own_coefficient():
+    """requirement: heat lost per uniform rise is h times the area, summed over all surfaces."""
+    cooling = {"upper_inside": 300.0, "lower_end": 70.0, "upper_end": 11.0, "upper_outside": 70.0}
+    conducting = build(3, cooling, {})
+    ones = np.ones(conducting.spaces.owned)
+    r, r_outer = 0.05, 0.09
+    ring, height = np.pi * (r_outer**2 - r**2), 0.02
+    walls = 2 * np.pi * height * (300.0 * r + 70.0 * r_outer)
+    cooled, _, _ = conducting.losses(ones, np.zeros_like(ones))
+    assert cooled == pytest.approx(walls + (70.0 + 11.0) * ring, rel=1e-12)

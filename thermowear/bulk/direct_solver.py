@@ -98,7 +98,7 @@ class DirectSolver:
         """Free the memory of the factor, also where others still refer to this solver."""
         self._factored.destroy()
         self._solver.destroy()
-        _return_freed_memory()
+        return_freed_memory()
 
     @property
     def negative_pivots(self) -> int:
@@ -231,7 +231,7 @@ def _entries(matrix: PETSc.Mat) -> int:
     return int(matrix.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"])
 
 
-def _return_freed_memory() -> None:
+def return_freed_memory() -> None:
     """Return freed memory to the system: the C library keeps the small blocks of a factor."""
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:  # glibc

@@ -78,6 +78,11 @@ class SolverChoice:
         return self.name == "multigrid"
 
     @property
+    def solves_once(self) -> bool:
+        """True if multigrid serves a single solution, after which its levels are given back."""
+        return self.iterative and self.single
+
+    @property
     def factorises_columns(self) -> bool:
         """True if a body is factorised for the time of its condensation alone."""
         return self.iterative and self.largest_factor <= _PART_MEANWHILE * self.available

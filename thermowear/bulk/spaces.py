@@ -18,7 +18,6 @@ from dolfinx import fem
 
 from .bodies import Bodies
 from .compiled import nodal_loads
-from .direct_solver import multiply
 from .field import as_function, lagrange_space, owned
 
 
@@ -127,23 +126,3 @@ def block_diagonal(blocks: Sequence[PETSc.Mat]) -> PETSc.Mat:
         return blocks[0]
     rows = [[b if i == k else None for i in range(len(blocks))] for k, b in enumerate(blocks)]
     return PETSc.Mat().createNest(rows, comm=blocks[0].comm).convert(PETSc.Mat.Type.AIJ)
-
-
-@dataclass(frozen=True)
-class BodyMatrices:
-    """Matrix that does not couple bodies, by the blocks of each, see `block_diagonal`.
-
-    Attributes
-    ----------
-    each : tuple of petsc4py.PETSc.Mat
-    columns : Spaces
-        Spaces of the vectors that it multiplies.
-    """
-
-    each: tuple[PETSc.Mat, ...]
-    columns: Spaces
-
-    def multiply(self, values: np.ndarray) -> np.ndarray:
-        """Product with owned values of all bodies. Every rank calls."""
-        parts = zip(self.each, self.columns.split(values), strict=True)
-        return np.concatenate([multiply(matrix, part) for matrix, part in parts])

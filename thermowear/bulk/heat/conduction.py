@@ -150,8 +150,8 @@ class Conduction:
         return replace(self, factor=factor)
 
     def release(self) -> None:
-        """Free what `for_columns` has factorised, until it is needed again."""
-        if isinstance(self.factor, BodySolvers):
+        """Free levels of multigrid and factors of columns, until they are needed again."""
+        if isinstance(self.factor, BodySolvers | MultigridSolver):
             self.factor.release()
 
     def in_body(self, index: int) -> BodyConduction:

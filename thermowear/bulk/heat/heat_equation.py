@@ -110,7 +110,7 @@ def conduction(
 
 @dataclass(frozen=True)
 class _BodyMatrices:
-    """Matrices of one body, of equal pattern, see `Conduction`; conductivity alone."""
+    """Matrices of one body, see `Conduction`; conductivity alone."""
 
     conductivity: PETSc.Mat
     cooling: PETSc.Mat
@@ -135,9 +135,8 @@ def _assembled(
     if passage is not None and set(passage.parts) & set(body.parts):
         moving = advection(body, kinematics, space, passage, conductivities, capacities)
     conductivity = assembled_matrix(conducting(body, kinematics, conductivities, degree)(T, δT))
-    transfers = [form(T, δT) for form in transferring(body, kinematics, cooling)]
-    cooled = assembled_matrix(*transfers, pattern=conductivity)
-    conductivity.axpy(1.0, cooled, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+    cooled = _cooled(body, kinematics, cooling, conductivity, (T, δT))
+    conductivity.axpy(1.0, cooled, PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
     capacity = None
     if len(capacities) == len(own):
         test = δT if moving is None else δT + moving.upwind
@@ -145,6 +144,22 @@ def _assembled(
         density = body.per_part(capacities) * T * test
         capacity = assembled_matrix(kinematics.integral(body.mesh, density, measure))
     return _BodyMatrices(conductivity, cooled, capacity, moving)
+
+
+def _cooled(
+    body: BodyMesh,
+    kinematics: Kinematics,
+    cooling: dict[str, float],
+    conductivity: PETSc.Mat,
+    arguments: tuple,
+) -> PETSc.Mat:
+    """Cooling of one body, with the pattern of its cooled surfaces: far smaller than the body's."""
+    if not cooling:
+        return assembled_matrix(pattern=conductivity)
+    (everywhere,) = transferring(body, kinematics, dict.fromkeys(cooling, 1.0))
+    pattern = assembled_matrix(everywhere(*arguments))
+    transfers = (form(*arguments) for form in transferring(body, kinematics, cooling))
+    return assembled_matrix(*transfers, pattern=pattern)
 
 
 def _carried(block: _BodyMatrices) -> PETSc.Mat:

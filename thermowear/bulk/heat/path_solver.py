@@ -92,21 +92,21 @@ class PathSolver(MultigridSolver):
         self.iterations: list[int] = []
         self._matrix, self._spaces, self._fixed, self._paths = matrix, spaces, fixed, paths
         self._symmetric = False
-        solver = PETSc.KSP().create(matrix.comm)
+
+    @cached_property
+    def _solver(self) -> PETSc.KSP:
+        """Krylov method with its preconditioner. Every rank calls."""
+        solver = PETSc.KSP().create(self._matrix.comm)
         solver.setType(PETSc.KSP.Type.FGMRES)
         solver.setGMRESRestart(_RESTART)
         solver.setTolerances(rtol=RELATIVE_TOLERANCE, atol=0.0, max_it=_MAX_ITERATIONS)
         solver.setNormType(PETSc.KSP.NormType.NORM_UNPRECONDITIONED)
+        solver.setOperators(self._matrix)
         solver.getPC().setType(PETSc.PC.Type.PYTHON)
-        self._solver = solver
-        self.repeat()
-
-    def repeat(self) -> None:
-        """Set up the preconditioner, again after a change of values."""
-        self._solver.setOperators(self._matrix)
         preconditioner = _PathPreconditioner(self._matrix, self._fixed, self._paths)
-        self._solver.getPC().setPythonContext(preconditioner)
-        self._solver.setUp()
+        solver.getPC().setPythonContext(preconditioner)
+        solver.setUp()
+        return solver
 
     @cached_property
     def _transposed(self) -> PathSolver:

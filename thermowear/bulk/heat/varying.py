@@ -23,7 +23,8 @@ from ..compiled import assembled_matrix
 from ..direct_solver import multiply
 from ..kinematics import Kinematics
 from ..mechanics.elasticity import Elasticity
-from ..spaces import BodyMatrices, Spaces, block_diagonal
+from ..mechanics.thermal_forces import ThermalForces
+from ..spaces import Spaces, block_diagonal
 from .conduction import Conduction
 from .heat_equation import ThermalMaterial, conducting
 
@@ -84,11 +85,11 @@ class VaryingExpansion(VaryingProperty):
 
     Attributes
     ----------
-    matrix : BodyMatrices
+    matrix : ThermalForces
         Nodal forces of its thermal expansion at its constant property [N/K].
     """
 
-    matrix: BodyMatrices
+    matrix: ThermalForces
 
     def excess(self, rise: np.ndarray) -> np.ndarray:
         """Additional rise at the nodes that causes the same strain at constant expansion [K]."""
@@ -189,7 +190,7 @@ def straining_rises(
 
 
 def thermal_forces(
-    load: BodyMatrices, parts: tuple[VaryingExpansion, ...], rise: np.ndarray
+    load: ThermalForces, parts: tuple[VaryingExpansion, ...], rise: np.ndarray
 ) -> np.ndarray:
     """Nodal forces of a temperature rise (n_owned,), owned rows [N]."""
     excess = (part.matrix.multiply(part.excess(rise)) for part in parts)

@@ -19,7 +19,9 @@ from ..compiled import assembled_matrix
 from ..direct_solver import DirectSolver, multiply
 from ..field import without_fixed
 from ..kinematics import Kinematics, section_measure
+from ..multigrid_solver import MultigridSolver
 from ..solver_choice import AnySolver, SolverChoice
+from .smoothed_stiffness import edge_smoothed_stiffness
 
 
 @dataclass(frozen=True)
@@ -85,17 +87,31 @@ class ElasticForms:
         mesh, measure = self.body.mesh, self.body.surface_measure(surface)
         return lambda δu: self.kinematics.integral(mesh, ufl.inner(traction, δu), measure)
 
-    def stiffness(self, space: fem.FunctionSpace) -> PETSc.Mat:
-        """Stiffness without supports in a space. Every rank calls."""
+    def stiffness(self, space: fem.FunctionSpace, blocked: bool = False) -> PETSc.Mat:
+        """Stiffness without supports in a space, see `assembled_matrix`. Every rank calls."""
         u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
-        return assembled_matrix(self.virtual_work(u, δu, space.ufl_element().degree))
+        work = self.virtual_work(u, δu, space.ufl_element().degree)
+        return assembled_matrix(work, blocked=blocked)
 
-    def thermal_load(self, rises: fem.FunctionSpace, space: fem.FunctionSpace, only: str | None):
-        """Matrix of nodal loads of a temperature rise, of the part `only` or of all [N/K]."""
+    def coarse_stiffness(self, linear: fem.FunctionSpace, degree: int) -> PETSc.Mat:
+        """Stiffness without supports of linear elements, as a coarse level below others.
+
+        Parameters
+        ----------
+        linear : dolfinx.fem.FunctionSpace
+        degree : int
+            Degree of the finer ones; above one, tetrahedra have smoothed strains.
+        """
+        if degree > 1 and self.body.cell_type == "tetrahedron":
+            return edge_smoothed_stiffness(linear, self.lame[:2])
+        return self.stiffness(linear)
+
+    def load_of_rises(self, rises: fem.FunctionSpace, space: fem.FunctionSpace, only: str | None):
+        """Bilinear form of `thermal_work`, of the part `only` or of all."""
         rise, δu = ufl.TrialFunction(rises), ufl.TestFunction(space)
         if only is not None:
             rise = self.body.per_part({only: 1.0}) * rise
-        return assembled_matrix(self.thermal_work(rise, δu, rises.ufl_element().degree))
+        return self.thermal_work(rise, δu, rises.ufl_element().degree)
 
     @cached_property
     def least_compressibility(self) -> float:
@@ -115,7 +131,7 @@ class ElasticBody(ElasticForms):
     fixed : ndarray of bool, shape (n_owned,)
         Mask of values held at zero.
     support_rows : petsc4py.PETSc.Mat
-        Rows of the stiffness of these values, for the support reactions.
+        Rows of the stiffness of the nodes of these values, for the support reactions.
     matrix : petsc4py.PETSc.Mat
         Stiffness with the rows and columns of these values eliminated.
     factor : DirectSolver or MultigridSolver
@@ -134,6 +150,11 @@ class ElasticBody(ElasticForms):
         """Displacements [m] due to nodal loads [N]; owned rows, one or several columns."""
         return self.factor.solve(without_fixed(loads, self.fixed))
 
+    def release(self) -> None:
+        """Free the levels of multigrid, until they are needed again. Every rank calls."""
+        if isinstance(self.factor, MultigridSolver):
+            self.factor.release()
+
     @contextmanager
     def solver_of_columns(self) -> Iterator[Callable]:
         """Function like `solve` for many columns of loads.
@@ -144,14 +165,22 @@ class ElasticBody(ElasticForms):
         if not self.choice.factorises_columns:
             yield self.solve
             return
-        factor = DirectSolver(self.matrix, dim=self.body.mesh.topology.dim)
+        matrix = self.matrix.convert(PETSc.Mat.Type.SBAIJ, PETSc.Mat())
+        factor = DirectSolver(matrix, dim=self.body.mesh.topology.dim)
         try:
             yield lambda loads: factor.solve(without_fixed(loads, self.fixed))
         finally:
             factor.destroy()
+            matrix.destroy()
 
     def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Support reactions [N], owned rows; zero in the free values."""
-        result = np.zeros(len(self.fixed))
-        result[self.fixed] = multiply(self.support_rows, displacement) - loads[self.fixed]
-        return result
+        result, held = np.zeros(len(self.fixed)), of_nodes(self.fixed, self.space)
+        result[held] = multiply(self.support_rows, displacement) - loads[held]
+        return np.where(self.fixed, result, 0.0)
+
+
+def of_nodes(values: np.ndarray, space: fem.FunctionSpace) -> np.ndarray:
+    """Mask of all values of the nodes of some owned ones, both (n_owned,)."""
+    width = space.dofmap.index_map_bs
+    return np.repeat(values.reshape(-1, width).any(axis=1), width)

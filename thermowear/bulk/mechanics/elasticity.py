@@ -20,8 +20,9 @@ from ..direct_solver import eliminate
 from ..field import owned
 from ..kinematics import Kinematics
 from ..solver_choice import SolverChoice, linear_solver
-from ..spaces import BodyMatrices, Spaces, block_diagonal, lagrange_spaces
-from .elastic_body import ElasticBody, ElasticForms, ElasticMaterial
+from ..spaces import Spaces, block_diagonal, lagrange_spaces
+from .elastic_body import ElasticBody, ElasticForms, ElasticMaterial, of_nodes
+from .thermal_forces import ThermalForces
 
 
 @dataclass(frozen=True)
@@ -74,6 +75,8 @@ class Elasticity:
         parts = zip(self.each, self.spaces.split(loads), self.spaces.split(result), strict=True)
         for body, load, found in parts:
             found[...] = body.solve(load)
+            if body.choice.solves_once:
+                body.release()
         return result
 
     def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
@@ -94,14 +97,14 @@ class Elasticity:
         """Coordinates of the owned nodes, shape (n_owned / gdim, gdim) [m]."""
         return self.spaces.nodes()
 
-    def thermal_load(self, temperatures: Spaces, only: str | None = None) -> BodyMatrices:
-        """Matrices of nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N/K].
+    def thermal_load(self, temperatures: Spaces, only: str | None = None) -> ThermalForces:
+        """Nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N].
 
         Over all bodies, or over the part `only`.
         """
         parts = zip(self.each, temperatures.each, strict=True)
-        each = tuple(body.thermal_load(rises, body.space, only) for body, rises in parts)
-        return BodyMatrices(each, temperatures)
+        each = tuple(body.load_of_rises(rises, body.space, only) for body, rises in parts)
+        return ThermalForces(each, temperatures, all(b.choice.solves_once for b in self.each))
 
 
 def elasticity(
@@ -149,12 +152,12 @@ def elasticity(
 def _elastic_body(
     forms: ElasticForms, space: fem.FunctionSpace, fixed: np.ndarray, choice: SolverChoice
 ) -> ElasticBody:
-    matrix = forms.stiffness(space)
-    support_rows = _rows(matrix, fixed)
+    matrix = forms.stiffness(space, blocked=choice.iterative)
+    support_rows = _rows(matrix, of_nodes(fixed, space))
     eliminate(matrix, fixed)
 
     def coarse(linear: Spaces) -> PETSc.Mat:
-        return forms.stiffness(linear.each[0])
+        return forms.coarse_stiffness(linear.each[0], space.ufl_element().degree)
 
     factor = linear_solver(choice, matrix, Spaces((space,)), fixed, coarse=coarse)
     solved = support_rows, matrix, factor, choice

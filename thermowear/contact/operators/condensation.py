@@ -12,7 +12,8 @@ import scipy.sparse as sp
 
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
-from ...bulk.spaces import BodyMatrices, Spaces
+from ...bulk.mechanics.thermal_forces import ThermalForces
+from ...bulk.spaces import Spaces
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
 from .face_nodes import face_nodes
@@ -93,7 +94,7 @@ def influence(
     pairing: Pairing,
     trace: sp.csr_matrix,
     basis: Basis,
-    thermal_loads: Sequence[BodyMatrices] = (),
+    thermal_loads: Sequence[ThermalForces] = (),
     distortion: DistortionRows | None = None,
 ) -> Influence:
     """Compute the elastic response to every pressure function. Every rank calls.
@@ -109,7 +110,7 @@ def influence(
         Transposed gap trace Bᵀ.
     basis : ndarray or csr_array, shape (n, m)
         Ψ, from `pressure.pressure_basis`.
-    thermal_loads : sequence of BodyMatrices
+    thermal_loads : sequence of ThermalForces
         Matrices G of nodal forces per nodal rise, from `Elasticity.thermal_load`.
     distortion : DistortionRows, optional
         Receives the weak gap per nodal rise of the first of them, which is not stored.

@@ -17,7 +17,8 @@ import scipy.sparse as sp
 from ...bulk.column_blocks import blocks
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
-from ...bulk.spaces import BodyMatrices, Spaces
+from ...bulk.mechanics.thermal_forces import ThermalForces
+from ...bulk.spaces import Spaces
 from ...parallel import sum_over_ranks
 from .exchange_update import ChangedExchange
 from .face_nodes import FaceNodes
@@ -50,7 +51,7 @@ class BodyColumns:
 
 
 def elastic_columns(
-    elastic: Elasticity, loads: sp.csc_matrix, matrices: Sequence[BodyMatrices] = ()
+    elastic: Elasticity, loads: sp.csc_matrix, matrices: Sequence[ThermalForces] = ()
 ) -> Iterator[BodyColumns]:
     """Solve for sparse nodal loads (n_owned, m), body by body. Every rank calls.
 
@@ -58,7 +59,7 @@ def elastic_columns(
     ----------
     elastic : Elasticity
     loads : csc_matrix, shape (n_owned, m)
-    matrices : sequence of BodyMatrices
+    matrices : sequence of ThermalForces
         Thermal load matrices.
     """
     parts = elastic.spaces.split(loads.tocsr())
@@ -131,7 +132,7 @@ class ThermalOpening:
     elastic : Elasticity
     loads : csc_matrix, shape (n_owned, m)
         Nodal loads Bᵗ w Ψ of the pressure functions.
-    matrices : sequence of BodyMatrices
+    matrices : sequence of ThermalForces
         G_k: nodal forces per nodal rise, of all bodies and of temperature-dependent expansions.
     per_rise : tuple of ndarray, shape (n_owned of the temperature, m)
         Weak gap per nodal rise, one for each matrix; empty if it is solved for [m³/K].
@@ -139,7 +140,7 @@ class ThermalOpening:
 
     elastic: Elasticity
     loads: sp.csc_matrix
-    matrices: Sequence[BodyMatrices]
+    matrices: Sequence[ThermalForces]
     per_rise: tuple[np.ndarray, ...]
 
     def of(self, rises: Sequence[np.ndarray]) -> np.ndarray:

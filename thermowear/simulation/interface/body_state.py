@@ -104,6 +104,8 @@ def body_state(system: System, contact: ContactState) -> BodyState:
         loads = loads + system.dead_load
     if temperatures is not None and system.thermal is not None:
         strained = system.thermal.forces(temperatures.rise)
+        if system.choice.solves_once:
+            system.thermal.conduction.release()
         highest = max(system.comm.allgather(float(temperatures.rise.max(initial=-np.inf))))
         hottest = max(highest, float(np.max(temperatures.faces.rise))) + system.thermal.ambient
     loads = loads + strained

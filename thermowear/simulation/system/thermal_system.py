@@ -21,8 +21,9 @@ from ...bulk.heat.varying import (
 )
 from ...bulk.kinematics import Kinematics
 from ...bulk.mechanics.elasticity import Elasticity
+from ...bulk.mechanics.thermal_forces import ThermalForces
 from ...bulk.solver_choice import SolverChoice
-from ...bulk.spaces import BodyMatrices, lagrange_spaces
+from ...bulk.spaces import lagrange_spaces
 from ...contact.operators.condensation import bath_matrix, condense_heat
 from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.operators.face_nodes import FaceNodes
@@ -111,7 +112,7 @@ class ThermalSystem:
     Attributes
     ----------
     conduction : Conduction
-    load : BodyMatrices
+    load : ThermalForces
         G: nodal forces per nodal rise [N/K].
     loads : ThermalLoads
         Thermal loads beside friction.
@@ -128,7 +129,7 @@ class ThermalSystem:
     """
 
     conduction: Conduction
-    load: BodyMatrices
+    load: ThermalForces
     loads: ThermalLoads
     face: InterfaceHeat | CoupledHeat
     ambient: float
@@ -142,7 +143,7 @@ class ThermalSystem:
         return isinstance(self.conduction, VaryingConduction)
 
     @property
-    def load_matrices(self) -> list[BodyMatrices]:
+    def load_matrices(self) -> list[ThermalForces]:
         """Nodal forces per nodal rise [N/K]: of all bodies, then of each varying expansion."""
         return [self.load, *(expansion.matrix for expansion in self.expansions)]
 

@@ -66,6 +66,18 @@ def test_a_soft_layer_is_compressed_at_each_point():
     assert i.pressure[pressing] * 1e-13 == pytest.approx(parabola[pressing], abs=2e-8)
 
 
+def test_the_size_of_the_bodies_does_not_matter():
+    """requirement: lengths a thousand times, the force a million times: the same pressure."""
+    coarse = "contact.method=pointwise", "mesh.degree=2", "contact.positioning=false"
+    sizes = ("radius", 10), ("block_radius", 20), ("block_height", 20)
+    large = [f"geometry.{key}={value} m" for key, value in sizes]
+    one = run_starter("sphere-on-block", *coarse)
+    other = run_starter("sphere-on-block", *coarse, *large, "load.force=500 MN")
+    np.testing.assert_allclose(other.interface.x, 1e3 * one.interface.x, rtol=1e-12)
+    scale = one.interface.pressure.max()
+    assert np.abs(other.interface.pressure - one.interface.pressure).max() < 1e-8 * scale
+
+
 def test_wear_is_refused():
     """requirement: an implicit step of wear, as of a model in Python, is an error."""
     system = built(starter("sphere-on-block", "contact.method=pointwise", "mesh.degree=2"))

@@ -5,7 +5,7 @@ smoothed aggregation (GAMG) continues with the rigid-body motions, or constants,
 The method is that of conjugate gradients, with Chebyshev polynomials as smoothers: of point-block
 Jacobi, on lower levels of symmetric Gauss-Seidel sweeps. Where heat is carried along, and the
 matrix is not symmetric, it is flexible GMRES, smoothed by GMRES with incomplete factors. Iterations
-hardly grow with the number of unknowns.
+do not grow with the number of unknowns.
 """
 
 from __future__ import annotations

@@ -1,0 +1,227 @@
+"""A contact face of several materials, each wearing by its own law, all as one body."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from thermowear.case import load
+from thermowear.errors import CaseError
+from thermowear.geometry.mesh.tagged import compact
+from thermowear.geometry.reading.export import write_mesh
+from thermowear.simulation import run
+from thermowear.simulation.runtime.observer import Observer
+from thermowear.verification.cases.wear.composite_face import (
+    BORDER,
+    COEFFICIENTS,
+    MODULI,
+    PRESSURE,
+    SPEED,
+    TIME,
+    Composite,
+)
+
+STEADY = {"type": "steady"}
+RUNNING_IN = {"type": "transient", "end_time": f"{TIME} s", "tolerance": 1e-3}
+PLANE, SPACE = Composite("plane-strain"), Composite("3d", "hexahedron")
+BOTH = replace(PLANE, bodies=("upper", "lower"))
+CONDUCTIVITIES = {"upper": 2.0, "insert": 50.0, "lower": 50.0, "inlay": 50.0}
+
+
+def law(k, **keys):
+    return {"coefficient": f"{k} 1/Pa", "per": "pressure"} | keys
+
+
+def hot(case, analysis, wear=None, **heat):
+    """Run with friction heat; the upper material insulates."""
+    materials = {
+        name: {
+            "young_modulus": f"{MODULI[name]} Pa",
+            "poisson_ratio": 0.3,
+            "conductivity": f"{k} W/(m K)",
+            "expansion": "1e-5 1/K",
+            "density": "7800 kg/m^3",
+            "specific_heat": "500 J/(kg K)",
+        }
+        for name, k in CONDUCTIVITIES.items()
+    }
+    sets = {"upper": ("upper", "insert"), "lower": ("lower", "inlay")}
+    tables = {
+        "bodies": {b: {"materials": {n: materials[n] for n in ns}} for b, ns in sets.items()},
+        "contact": {"friction": 0.3},
+        "heat": {
+            "ambient": "20 degC",
+            "temperature": {"upper_end": "20 degC", "lower_end": "20 degC"},
+        }
+        | heat,
+    }
+    return case.run(analysis, **tables, **({} if wear is None else {"wear": wear}))
+
+
+def test_alike_laws_are_one_law():
+    """
+    requirement: a law given twice, by part, is that of the body: the same points and pressures.
+    """
+    k = 5e-14
+    parts = {"materials": {name: law(k) for name in ("upper", "insert")}}
+    found, known = (
+        PLANE.run(RUNNING_IN, wear={"upper": wear}).interface for wear in (parts, law(k))
+    )
+    np.testing.assert_array_equal(found.pressure, known.pressure)
+    np.testing.assert_array_equal(found.wear_1, known.wear_1)
+
+
+def test_parts_without_a_law_have_that_of_the_body():
+    """
+    requirement: the body's own law fills in; the border has a point on either side.
+    """
+    k, own = COEFFICIENTS["upper"], {"insert": law(COEFFICIENTS["insert"])}
+    found = PLANE.run(STEADY, wear={"upper": law(k) | {"materials": own}})
+    known = PLANE.run(STEADY)
+    np.testing.assert_allclose(found.interface.pressure, known.interface.pressure, rtol=1e-13)
+    assert (np.abs(known.interface.x - BORDER) < 1e-9).sum() == 2
+    assert known.summary["wear_coefficient_per"] == {
+        "upper.upper": "pressure",
+        "upper.insert": "pressure",
+    }
+
+
+@pytest.mark.parametrize("case", [PLANE, SPACE, Composite("axisymmetric")])
+def test_pressure_before_running_in(case):
+    """
+    requirement: wear laws change the unworn contact by the space of its pressures alone.
+    """
+    found, known = (
+        case.run({"type": "initial"}, wear=wear)
+        for wear in (case.tables("")["wear"], {"upper": law(1e-14)})
+    )
+    assert found.summary["approach_m"] == pytest.approx(known.summary["approach_m"], rel=5e-3)
+    assert found.summary["equilibrium_relative_error"] < 1e-9
+    i = found.interface
+    assert i.weight @ i.pressure == pytest.approx(PRESSURE * case.area, rel=1e-12)
+    assert np.all(i.pressure > 0)
+    k = np.where(i.pressure == 0, 0, i.wear_rate_1 / i.pressure)
+    assert len(np.unique(np.round(k / k.max(), 9))) == 2  # each material wears by its own law
+
+
+@pytest.mark.parametrize("case", [PLANE, SPACE, Composite("axisymmetric")])
+def test_hot_steady_state(case):
+    """
+    requirement: with friction heat the steady pressures are the same, and the balances hold.
+    """
+    result = hot(case, STEADY, case.tables("")["wear"])
+    np.testing.assert_allclose(result.interface.pressure, case.pressure(result), rtol=1e-9)
+    np.testing.assert_allclose(result.interface.wear_rate_1, case.effective * PRESSURE * SPEED)
+    assert result.summary["heat_balance_relative_error"] < 1e-9
+    assert result.interface.temperature_1.max() > 297.0
+
+
+@pytest.mark.parametrize("transient", [False, True])
+def test_hot_running_in(transient):
+    """
+    requirement: the running-in with friction heat ends in that state, the mesh having followed.
+    """
+    result = hot(PLANE, RUNNING_IN, **({"transient": True} if transient else {}))
+    np.testing.assert_allclose(result.interface.pressure, PLANE.pressure(result), rtol=5e-3)
+    assert result.summary["geometry_updates"] >= 2
+    assert result.summary["heat_balance_relative_error"] < 1e-9
+
+
+def test_a_rate_that_depends_on_the_temperature_in_one_part():
+    """
+    requirement: k_i(T_i) p_i is uniform, T being that of the point; other parts do not see it.
+    """
+    k = COEFFICIENTS["insert"]
+    rate = {"rate": f"{k}/Pa*p*v*(1 + 0.01*(T - 293.15 K)/(1 K))"}
+    wear = {"upper": law(COEFFICIENTS["upper"]) | {"materials": {"insert": rate}}}
+    i = hot(PLANE, STEADY, wear).interface
+    insert = i.pressure < PRESSURE
+    hotter = np.where(insert, 1 + 0.01 * (i.temperature_1 - 293.15), 1.0)
+    each = np.where(insert, k, COEFFICIENTS["upper"])
+    np.testing.assert_allclose(each * hotter * i.pressure * SPEED, i.wear_rate_1, rtol=1e-9)
+    assert np.ptp(i.wear_rate_1) < 1e-8 * i.wear_rate_1.mean()
+    assert np.ptp(i.pressure[insert]) > 1e-3 * PRESSURE
+
+
+def test_friction_stress_and_factors_by_part():
+    """
+    requirement: ``per`` and the factors of a part act in this part alone.
+    """
+    stress = {"coefficient": f"{COEFFICIENTS['upper'] / 0.25} 1/Pa", "per": "friction-stress"}
+    factor = {"pressure": {"at": ["0 MPa", "100 MPa"], "factor": [3.0, 3.0]}}
+    parts = {"upper": stress, "insert": law(COEFFICIENTS["insert"] / 3, factor=factor)}
+    result = PLANE.run(STEADY, wear={"upper": {"materials": parts}}, contact={"friction": 0.25})
+    np.testing.assert_allclose(result.interface.pressure, PLANE.pressure(result), rtol=1e-9)
+
+
+@pytest.fixture(scope="module")
+def blocks(tmp_path_factory):
+    """Path of a mesh file."""
+    path = tmp_path_factory.mktemp("blocks") / "blocks.msh"
+    write_mesh(compact(PLANE.mesh()), path)
+    return path
+
+
+class Notes(Observer):
+    """Notes of a run."""
+
+    def __init__(self):
+        self.notes = []
+
+    def note(self, text):
+        self.notes.append(text)
+
+
+def test_steps_between_materials_of_both_faces_remain_in_the_gap(blocks):
+    """
+    requirement: no mesh follows a step in the common face; that is noted, and the state right.
+    """
+    told = Notes()
+    result = run(load(BOTH.tables(blocks) | {"analysis": RUNNING_IN}), observer=told)
+    assert [text for text in told.notes if "no mesh follows the step between them" in text]
+    assert "geometry_updates" not in result.summary
+    np.testing.assert_allclose(result.interface.pressure, BOTH.pressure(result), rtol=1e-6)
+    alone = Notes()
+    assert run(load(PLANE.tables(blocks) | {"analysis": RUNNING_IN}), observer=alone).summary[
+        "geometry_updates"
+    ]
+    assert not alone.notes
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (
+            {"wear": {"upper": {"materials": {"insert": law(1e-14)}}}},
+            r"^wear\.upper\.materials\.upper: missing; the contact face upper_face has cells",
+        ),
+        (
+            {"wear": {"upper": {"materials": {"inserts": law(1e-14)}} | law(1e-14)}},
+            r"^wear\.upper\.materials\.inserts: the file has no cells named 'inserts'; one of: "
+            "inlay, insert, lower, upper",
+        ),
+        ({"mesh": {"degree": 1}}, r"^mesh\.degree: found 1; .* the pressure jumps"),
+        ({"contact": {"pressure_degree": 2}}, r"^contact\.pressure_degree: .* below mesh\.degree"),
+        ({"contact": {"pressure_degree": "lobatto"}}, r"^contact\.pressure_degree: "),
+        ({"contact": {"method": "nitsche"}}, r"^contact\.method: 'nitsche' is not supported"),
+    ],
+)
+def test_faults(blocks, changes, message):
+    with pytest.raises(CaseError, match=message) as caught:
+        run(load(PLANE.tables(blocks) | {"analysis": STEADY} | changes))
+    assert len(caught.value.faults) == 1
+
+
+def test_elements_across_a_border_of_the_other_face(tmp_path):
+    """
+    requirement: materials of body 2 may not end inside elements of body 1.
+    """
+    path, mesh = tmp_path / "across.msh", BOTH.mesh()
+    lower = np.isin(mesh.cell_tags, [mesh.bodies.index(name) + 1 for name in ("lower", "inlay")])
+    own = np.unique(mesh.cells[lower])
+    points = mesh.points.copy()
+    within = np.clip((points[own, 0] - 0.02) / 0.03, 0.0, 1.0)
+    points[own, 0] += 2e-3 * np.sin(np.pi * within)
+    write_mesh(compact(replace(mesh, points=points)), path)
+    with pytest.raises(CaseError, match=r"^geometry\.contact: elements of upper_face lie across"):
+        run(load(BOTH.tables(path) | {"analysis": STEADY}))

@@ -2,14 +2,18 @@
 
 from dataclasses import replace
 
+from mpi4py import MPI
+
 import numpy as np
 import pytest
 
 from thermowear.case import load
 from thermowear.errors import CaseError
+from thermowear.geometry.cad.design import write_table
 from thermowear.geometry.mesh.tagged import compact
 from thermowear.geometry.reading.export import write_mesh
 from thermowear.simulation import run
+from thermowear.simulation.analyses.design import steady_design
 from thermowear.simulation.runtime.observer import Observer
 from thermowear.verification.cases.wear.composite_face import (
     BORDER,
@@ -20,6 +24,8 @@ from thermowear.verification.cases.wear.composite_face import (
     TIME,
     Composite,
 )
+
+from ..systems import built
 
 STEADY = {"type": "steady"}
 RUNNING_IN = {"type": "transient", "end_time": f"{TIME} s", "tolerance": 1e-3}
@@ -186,6 +192,35 @@ def test_steps_between_materials_of_both_faces_remain_in_the_gap(blocks):
         "geometry_updates"
     ]
     assert not alone.notes
+
+
+@pytest.mark.parametrize("case", [PLANE, SPACE])
+def test_parts_made_in_their_worn_shape(case, tmp_path):
+    """
+    requirement: a face of that shape presses from the start as in its steady state.
+    """
+    mesh, design = tmp_path / "blocks.msh", tmp_path / "design.csv"
+    write_mesh(compact(case.mesh()), mesh)
+    tables = case.tables(mesh)
+    steady = load(tables | {"analysis": STEADY})
+    write_table(steady_design(built(steady, MPI.COMM_SELF), 1), design)
+    shaped = tables["geometry"] | {"initial_shape": str(design)}
+    result = run(load(tables | {"geometry": shaped, "analysis": {"type": "initial"}}))
+    np.testing.assert_allclose(result.interface.pressure, case.pressure(result), rtol=1e-6)
+
+
+def test_the_shape_at_the_end_of_the_running_in_is_a_shape_to_start_from(blocks, tmp_path):
+    """
+    requirement: places that are listed twice, at the border of materials, are one.
+    """
+    i = PLANE.run(RUNNING_IN).interface
+    path = tmp_path / "profile.csv"
+    rows = np.column_stack([i.s, i.shape])
+    np.savetxt(path, rows, delimiter=",", header="s_m,shape_m", comments="")
+    tables = PLANE.tables(blocks)
+    shaped = tables["geometry"] | {"initial_shape": str(path)}
+    result = run(load(tables | {"geometry": shaped, "analysis": {"type": "initial"}}))
+    np.testing.assert_allclose(result.interface.pressure, PLANE.pressure(result), rtol=2e-2)
 
 
 @pytest.mark.parametrize(

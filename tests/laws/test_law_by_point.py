@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.laws import LocalState, PowerWear, steady_pressure
+from thermowear.laws import InPlace, LocalState, PowerWear, steady_pressure, uniform_track
 from thermowear.laws.formulas import wear_rate
 from thermowear.laws.law_by_point import LawByPoint, law_by_point
 
@@ -104,3 +104,19 @@ def test_two_bodies_one_of_two_materials():
     np.testing.assert_allclose(total, steady.velocity[0], rtol=1e-11)
     assert np.ptp(p[:15]) < 1e-9 * p[0]
     assert abs(p[0] / p[-1] - 1) > 0.1
+
+
+def test_two_materials_on_a_body_that_wears_along_its_track():
+    """
+    requirement: the track wears uniformly by the mean, and the pressures keep the ratio of 1/k.
+    """
+    at, weights = np.repeat([0, 1], [20, 10]), np.full(30, 1e-5)
+    pad = law_by_point([PowerWear(2e-13), PowerWear(8e-13)], at)
+    speed, modes = np.full(30, 0.1), np.ones((30, 1))
+    spread = [InPlace(), uniform_track(np.full(30, 1e-3))]
+    laws = [pad, PowerWear(1e-13)]
+    steady = steady_pressure(weights, modes, modes, np.array([900.0]), laws, speed, spread)
+    p = steady.pressure
+    np.testing.assert_allclose(p[at == 0], 4 * p[at == 1][0], rtol=1e-11)
+    assert np.ptp(steady.rates[1]) < 1e-12 * steady.rates[1].max()
+    np.testing.assert_allclose(sum(steady.rates), steady.velocity[0], rtol=1e-11)

@@ -18,6 +18,7 @@ from thermowear.simulation.runtime.observer import Observer
 from thermowear.verification.cases.wear.composite_face import (
     BORDER,
     COEFFICIENTS,
+    HEIGHT,
     MODULI,
     PRESSURE,
     SPEED,
@@ -149,6 +150,43 @@ def test_a_rate_that_depends_on_the_temperature_in_one_part():
     assert np.ptp(i.pressure[insert]) > 1e-3 * PRESSURE
 
 
+def test_a_tilting_holder():
+    """
+    requirement: the whole face wears as a rigid body, whose tilt keeps the moment zero.
+    """
+    pivot = 33e-3
+    holder = {"free": ["z", "rotation"], "pivot": [f"{pivot} m", f"{HEIGHT} m"]}
+    i = PLANE.run(STEADY, holder=holder).interface
+    insert = np.cumsum(np.abs(i.x - BORDER) < 1e-9) + (i.x > BORDER) >= 2
+    k = np.where(insert, COEFFICIENTS["insert"], COEFFICIENTS["upper"])
+    np.testing.assert_allclose(i.wear_rate_1, k * i.pressure * SPEED, rtol=1e-12)
+    tilt = np.polynomial.Polynomial.fit(i.x, i.wear_rate_1, 1)
+    np.testing.assert_allclose(tilt(i.x), i.wear_rate_1, rtol=1e-9)
+    assert np.ptp(i.wear_rate_1) > 0.1 * i.wear_rate_1.max()
+    assert abs((i.weight * i.pressure) @ (i.x - pivot)) < 1e-9 * pivot * PRESSURE * PLANE.area
+
+
+@pytest.mark.parametrize("case", [PLANE, replace(SPACE, cells="tetrahedron")])
+def test_faces_that_do_not_match(case, tmp_path):
+    """
+    requirement: body 2 of one wear law may be meshed in any way.
+    """
+    path, mesh = tmp_path / "blocks.msh", shifted(case.mesh())
+    write_mesh(compact(mesh), path)
+    for analysis, allowed in ((STEADY, 1e-9), (RUNNING_IN, 1e-3)):
+        result = run(load(case.tables(path) | {"analysis": analysis}))
+        np.testing.assert_allclose(result.interface.pressure, case.pressure(result), rtol=allowed)
+
+
+def shifted(mesh):
+    """Mesh with the nodes of body 2 moved along the face, but its ends."""
+    lower = np.isin(mesh.cell_tags, [mesh.bodies.index(name) + 1 for name in ("lower", "inlay")])
+    own, points = np.unique(mesh.cells[lower]), mesh.points.copy()
+    within = np.clip((points[own, 0] - 0.02) / 0.03, 0.0, 1.0)
+    points[own, 0] += 1e-3 * np.sin(np.pi * within)
+    return replace(mesh, points=points)
+
+
 def test_friction_stress_and_factors_by_part():
     """
     requirement: ``per`` and the factors of a part act in this part alone.
@@ -251,12 +289,7 @@ def test_elements_across_a_border_of_the_other_face(tmp_path):
     """
     requirement: materials of body 2 may not end inside elements of body 1.
     """
-    path, mesh = tmp_path / "across.msh", BOTH.mesh()
-    lower = np.isin(mesh.cell_tags, [mesh.bodies.index(name) + 1 for name in ("lower", "inlay")])
-    own = np.unique(mesh.cells[lower])
-    points = mesh.points.copy()
-    within = np.clip((points[own, 0] - 0.02) / 0.03, 0.0, 1.0)
-    points[own, 0] += 2e-3 * np.sin(np.pi * within)
-    write_mesh(compact(replace(mesh, points=points)), path)
+    path = tmp_path / "across.msh"
+    write_mesh(compact(shifted(BOTH.mesh())), path)
     with pytest.raises(CaseError, match=r"^geometry\.contact: elements of upper_face lie across"):
         run(load(BOTH.tables(path) | {"analysis": STEADY}))

@@ -75,6 +75,9 @@ class InPlace(Distribution):
     share: float = 1.0
 
 
+IN_PLACE = InPlace()
+
+
 def uniform_track(lengths: np.ndarray) -> Distribution:
     """Uniform track: all points pass through the whole contact (strip, or drum under a shoe).
 

@@ -23,15 +23,15 @@ class PowerWear:
 
     Attributes
     ----------
-    coefficient : float
+    coefficient : float or ndarray, shape (n,)
         κ in ``(m/s)^(1-a) Pa^(-b)``; for a = b = 1 Archard's k.
-    pressure_exponent, velocity_exponent : float
-        b and a.
+    pressure_exponent, velocity_exponent : float or ndarray, shape (n,)
+        b and a. Arrays are values at the contact points, see `law_by_point`.
     """
 
-    coefficient: float
-    pressure_exponent: float = 1.0
-    velocity_exponent: float = 1.0
+    coefficient: Values
+    pressure_exponent: Values = 1.0
+    velocity_exponent: Values = 1.0
     variables: ClassVar[frozenset[str]] = frozenset({"p", "v"})
 
     @classmethod

@@ -9,11 +9,7 @@ from .analyses import (
 )
 from .body import Body, Material
 from .conditions import Heat, Holder, Motion
-from .interface import (
-    ContactMethod,
-    FaceWear,
-    HardnessConductance,
-    Interface,
-)
+from .face_wear import CompositeWear, FaceWear
+from .interface import ContactMethod, HardnessConductance, Interface
 from .model import Discretisation, MeshSource, Model
 from .tracks import CircularTrack, EvenTrack, PinTrack, TabulatedTrack, Track

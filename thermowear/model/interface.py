@@ -16,62 +16,11 @@ from ..laws.coefficients import (
     PressureConductance,
     harmonic_mean,
 )
-from ..laws.distribution import Distribution, InPlace
 from ..laws.interfaces import Law
 from ..laws.plausible import typical_value
 from ..laws.time_course import TimeFunction
 from .body import WHY, Facing, Material
-from .tracks import Track
-
-
-@dataclass(frozen=True)
-class FaceWear:
-    """Wear of one face.
-
-    Attributes
-    ----------
-    law : Law
-    factors : Multipliers
-        Tabulated factors of the rate, by the temperature of the face, the pressure and the speed.
-    friction_exponent : float
-        Exponent of the coefficient of friction in a law per friction stress; 0 in other laws.
-    track : Distribution or Track
-        In place, at a constant duty factor, or along a track that passes the contact.
-    per : str or None
-        Stress that a coefficient of wear multiplies, for the summary; None for other laws.
-    """
-
-    law: Law
-    factors: Multipliers = field(default_factory=Multipliers)
-    friction_exponent: float = 0.0
-    track: Distribution | Track = field(default_factory=InPlace)
-    per: str | None = None
-
-    @property
-    def in_place(self) -> bool:
-        """True if the face wears where it is pressed."""
-        return isinstance(self.track, InPlace)
-
-    def distribution(
-        self, points: np.ndarray, weights: np.ndarray, thickness: float
-    ) -> Distribution:
-        """Distribution of the wear at contact points.
-
-        Parameters
-        ----------
-        points : ndarray, shape (n, gdim) [m]
-        weights : ndarray, shape (n,) [m²]
-        thickness : float
-            Thickness of a plane model; 1 in the others [m].
-        """
-        if isinstance(self.track, Distribution):
-            return self.track
-        return self.track.distribution(points, weights, thickness)
-
-    @property
-    def varies(self) -> bool:
-        """True if the rate depends on temperature or depth, or has tabulated factors."""
-        return bool(self.law.variables & {"T", "depth"} or self.factors.variables)
+from .face_wear import Wear
 
 
 @dataclass(frozen=True)
@@ -140,7 +89,7 @@ class Interface:
         Conductance of separated faces [W/(m² K)].
     partition : float or str
         Fraction of the friction heat released on body 1; ``"effusivity"``: ``e1/(e1 + e2)``.
-    wear : mapping of int to FaceWear
+    wear : mapping of int to FaceWear or CompositeWear
         Wear of both faces by index (0 is body 1); faces that do not wear are left out.
     closes_by_wear : bool
         True if the gap between opposite points closes by wear where faces wear in place, as in
@@ -163,7 +112,7 @@ class Interface:
     conductance: Law | HardnessConductance | None = None
     gap_conductance: float = 0.0
     partition: float | Literal["effusivity"] = 0.5
-    wear: Mapping[int, FaceWear] = field(default_factory=dict)
+    wear: Mapping[int, Wear] = field(default_factory=dict)
     closes_by_wear: bool = True
     compliance: float = 0.0
     initial_shape: str | None = None
@@ -199,7 +148,7 @@ class Interface:
     def wearing_in_place(self) -> dict[int, float]:
         """Typical wear rates of the faces that close the gap by wear in place, by index [m/s]."""
         return {
-            index: typical_value(wear.law, self.nominal_friction)
+            index: wear.typical_rate(self.nominal_friction)
             for index, wear in self.wear.items()
             if self.closes_by_wear and wear.in_place
         }

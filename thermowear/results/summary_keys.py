@@ -49,7 +49,9 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
         from_key("wear_dissipation_W", "wear dissipation power"),
         _history["wear_volume_1"],
         _history["wear_volume_2"],
-        from_key("wear_coefficient_per", meaning="of each body: friction-stress or pressure"),
+        from_key(
+            "wear_coefficient_per", meaning="of each body or part: friction-stress or pressure"
+        ),
         from_key("distance_from_steady", "distance from the steady pressure"),
     ),
     "Heat and energy": (

@@ -102,6 +102,12 @@ class MeshBody:
         first, *others = self.materials.items()
         return {self.name: first[1]} | {f"{self.name}:{tag}": m for tag, m in others}
 
+    @property
+    def part_of_tag(self) -> dict[int, str]:
+        """Name of the part of each cell tag; empty for a body of one material."""
+        tags = self.materials if isinstance(self.materials, Mapping) else ()
+        return dict(zip(tags, self.parts, strict=False))
+
     def part_of_cells(self) -> np.ndarray:
         """Index of the part of each owned cell of the mesh, -1 for cells of other bodies."""
         parts = np.full(self.mesh.topology.index_map(self.mesh.topology.dim).size_local, -1)

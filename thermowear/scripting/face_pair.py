@@ -11,7 +11,8 @@ import numpy as np
 from ..case.values import units
 from ..errors import CaseError
 from ..laws.time_course import TimeFunction
-from ..model.interface import ContactMethod, FaceWear, HardnessConductance, Interface
+from ..model.face_wear import CompositeWear, FaceWear, Wear
+from ..model.interface import ContactMethod, HardnessConductance, Interface
 from .body import BodySurface, MeshBody, require_surface
 from .conversion import coefficient_law, number, quantities, rate_law
 
@@ -28,8 +29,9 @@ class FacePair:
         Coefficient of friction: a number, an expression, a law, or a function of some of p, v, T.
     conductance : float, str, InterfaceLaw, callable, HardnessConductance or None
         Contact conductance likewise; None: perfect contact [W/(m² K)].
-    wear : mapping of MeshBody to (str, Law, callable or FaceWear)
-        Wear rates of the bodies, also as functions of some of p, v, T, depth, mu [m/s].
+    wear : mapping of MeshBody to (str, Law, callable, FaceWear, or mapping of int to these)
+        Wear rates of the bodies, also as functions of some of p, v, T, depth, mu [m/s]; of a body
+        of several materials also by cell tag: a law for each one on its contact face.
     partition : float or str
         Fraction of the friction heat released into the body of `one`; ``"effusivity"``: by the
         thermal effusivities of both.
@@ -70,7 +72,7 @@ class FacePair:
         unknown = [body for body in self.wear if body not in bodies]
         if unknown:
             raise CaseError(f"Interface.wear: {unknown[0]!r} is no body of this interface")
-        wear = {bodies.index(body): _face_wear(law, body) for body, law in self.wear.items()}
+        wear = {bodies.index(body): _body_wear(law, body) for body, law in self.wear.items()}
         kinds = {"gap_conductance": units.LeastHeatTransfer, "compliance": units.Compliance}
         kept = ("gap_conductance", "friction_history", "pressure_degree", "method")
         settings = {key: getattr(self, key) for key in kept}
@@ -95,7 +97,24 @@ class FacePair:
         return into_one if held is self.one else 1.0 - into_one
 
 
-def _face_wear(given: Any, body: MeshBody) -> FaceWear:
-    if isinstance(given, FaceWear):
+def _body_wear(given: Any, body: MeshBody) -> Wear:
+    """Wear of a body by one law, or by those of its materials."""
+    where = f"Interface.wear of {body.name!r}"
+    if isinstance(given, CompositeWear):
         return given
-    return FaceWear(rate_law(given, f"Interface.wear of {body.name!r}"))
+    if not isinstance(given, Mapping):
+        return _face_wear(given, where)
+    parts = {}
+    for tag, law in given.items():
+        if tag not in body.part_of_tag:
+            known = ", ".join(map(str, body.part_of_tag)) or "none, the body has one material"
+            raise CaseError(f"{where}: unknown cell tag {tag!r}; known: {known}")
+        wear = _face_wear(law, f"{where}, tag {tag}")
+        if not wear.in_place:
+            raise CaseError(f"{where}, tag {tag}: must wear in place")
+        parts[body.part_of_tag[tag]] = wear
+    return CompositeWear(parts)
+
+
+def _face_wear(given: Any, where: str) -> FaceWear:
+    return given if isinstance(given, FaceWear) else FaceWear(rate_law(given, where))

@@ -205,8 +205,8 @@ class Geometry(Section):
         """Cell sets of a mesh file that a body consists of."""
         return ()
 
-    def with_cell_sets(self, sets: dict[str, tuple[str, ...]]) -> Geometry:
-        """Geometry with zones for the cell sets of each body; unchanged where there are none."""
+    def with_cell_sets(self, sets: dict[str, dict[str, str]]) -> Geometry:
+        """Geometry with zones for the cell sets of bodies, given with the paths of their tables."""
         return self
 
     @property

@@ -140,7 +140,11 @@ class Case(Section):
 
     @model_validator(mode="after")
     def _cell_sets_as_parts(self):
-        sets = {name: tuple(body.materials) for name, body in self.bodies.items() if body.materials}
+        sets: dict[str, dict[str, str]] = {}
+        for kind, tables in (("bodies", self.bodies), ("wear", self.wear)):
+            for name, table in tables.items():
+                for part in table.materials:
+                    sets.setdefault(name, {}).setdefault(part, f"{kind}.{name}.materials.{part}")
         if sets:
             object.__setattr__(self, "geometry", self.geometry.with_cell_sets(sets))
         return self
@@ -203,7 +207,7 @@ class Case(Section):
         return (
             not isinstance(conductance, float | None)
             or bool(self.friction_variables)
-            or any(law.factor.depends_on or law.follows_state for law in self.wear.values())
+            or any(law.factor.depends_on or law.follows_state for law in self.wear.laws.values())
         )
 
     def tagged_mesh(self, zone: tuple[float, float] | None = None):
@@ -242,6 +246,11 @@ class Case(Section):
         self.geometry.check(mesh, self)
         return mesh
 
+    def part_named(self, body: str, name: str) -> str | None:
+        """Part of a body by the name of its zone, or cell set of a mesh file; None if unknown."""
+        zones, set_of = self.geometry.parts_of(body)[1:], self.geometry.set_of
+        return next((part for part in zones if set_of.get(part, part) == name), None)
+
     def material(self, part: str) -> Properties:
         """Material of a part, with ``like`` resolved; a zone may share the material of its body."""
         return self.located_material(part)[1]
@@ -258,6 +267,8 @@ class Case(Section):
         owner = geometry.zones.get(part, part)
         name = part if part in bodies else owner
         chosen = geometry.set_of.get(part)
+        if chosen is not None and chosen not in bodies[owner].materials:
+            chosen = None  # it has a wear law of its own only
         if chosen is None and not bodies[name].has_own and bodies[name].materials:
             chosen = next(iter(bodies[name].materials))  # all of its cells are in sets
         table: Properties = bodies[name]

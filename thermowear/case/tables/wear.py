@@ -48,8 +48,8 @@ def _text(value) -> str:
 Coefficient = Annotated[Any, BeforeValidator(_coefficient), PlainSerializer(_text, return_type=str)]
 
 
-class BodyWearTable(Section):
-    """Wear law of one body: a coefficient with exponents, or a rate.
+class RateTable(Section):
+    """Wear law: a coefficient with exponents, or a rate.
 
     Attributes
     ----------
@@ -63,10 +63,6 @@ class BodyWearTable(Section):
         ``p^b v^a``.
     pressure_exponent, velocity_exponent : float
         b and a.
-    spread : str
-        ``"in-place"``: wear at the contact points; ``"track"``: wear of body 2 along its whole
-        track: uniform in plane models; on a rotating disk at each radius, multiplied by the
-        fraction of a turn for which it is under the pad.
     factor : MultiplierTables
         Factors of the rate: tables of the temperature of the body's own face, pressure and speed.
     """
@@ -76,11 +72,17 @@ class BodyWearTable(Section):
     per: Literal["friction-stress", "pressure"] = "friction-stress"
     pressure_exponent: Annotated[Number, Field(ge=0.1, le=10.0)] = 1.0
     velocity_exponent: Annotated[Number, Field(ge=0.0, le=10.0)] = 1.0
-    spread: Literal["in-place", "track"] = "in-place"
     factor: MultiplierTables = MultiplierTables()
+
+    @property
+    def has_law(self) -> bool:
+        """True if it has a law, or a key of one."""
+        return True
 
     @model_validator(mode="after")
     def _one_law(self):
+        if not self.has_law:
+            return self
         if self.rate is not None:
             for key in _OF_POWER:
                 if key in self.model_fields_set:
@@ -98,10 +100,11 @@ class BodyWearTable(Section):
 
     @model_serializer(mode="wrap")
     def _without_other_keys(self, handler):
-        """Leave out the keys of the other type of law."""
-        written = handler(self)
-        left_out = ("rate",) if self.rate is None else _OF_POWER
-        return {key: value for key, value in written.items() if key not in left_out}
+        """Leave out the keys of the other type of law or of both, and an empty table of parts."""
+        written, left_out = handler(self).items(), {"rate"} if self.rate is None else {*_OF_POWER}
+        if self.coefficient is None and self.rate is None:
+            left_out = {*RateTable.model_fields}
+        return {k: v for k, v in written if k not in left_out and (k != "materials" or v)}
 
     @property
     def law(self) -> Law | None:
@@ -144,6 +147,32 @@ class BodyWearTable(Section):
         return float(self.coefficient.to_base_units().magnitude)
 
 
+class PartWearTable(RateTable):
+    """Wear law of a part of a contact face."""
+
+
+class BodyWearTable(RateTable):
+    """Wear law of one body, and those of its parts.
+
+    Attributes
+    ----------
+    spread : str
+        ``"in-place"``: wear at the contact points; ``"track"``: wear of body 2 along its whole
+        track: uniform in plane models; on a rotating disk at each radius, multiplied by the
+        fraction of a turn for which it is under the pad.
+    materials : dict of str to PartWearTable
+        Wear laws by cell set of a mesh file, or by zone of a geometry. All other cells of the face
+        wear by the body's own law, which may be omitted if there are none.
+    """
+
+    spread: Literal["in-place", "track"] = "in-place"
+    materials: dict[str, PartWearTable] = {}
+
+    @property
+    def has_law(self) -> bool:
+        return not self.materials or bool(self.model_fields_set & RateTable.model_fields.keys())
+
+
 _UPDATE = number_or(
     "auto",
     "never",
@@ -182,6 +211,15 @@ class WearTable(Section, Mapping[str, BodyWearTable]):
         if self.update == "never":
             return math.inf
         return self.AUTOMATIC if self.update == "auto" else float(self.update)
+
+    @property
+    def laws(self) -> dict[str, RateTable]:
+        """Wear laws of bodies and parts, by the path of their table below ``wear``."""
+        found: dict[str, RateTable] = {}
+        for name, body in self.items():
+            found |= {name: body} if body.has_law else {}
+            found |= {f"{name}.materials.{part}": law for part, law in body.materials.items()}
+        return found
 
     def __getitem__(self, body: str) -> BodyWearTable:
         return self.__pydantic_extra__[body]

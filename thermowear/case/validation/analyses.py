@@ -110,7 +110,7 @@ def varying(case: Case) -> Iterator[Fault]:
     """Variables of laws and tables of factors that are available in the analysis."""
     type_, constant = case.analysis.type, case.analysis.type in _CONSTANT
     tables = {"contact.friction_factor": case.contact.friction_factor}
-    tables |= {f"wear.{name}.factor": law.factor for name, law in case.wear.items()}
+    tables |= {f"wear.{name}.factor": law.factor for name, law in case.wear.laws.items()}
     for path, table in tables.items():
         if constant and table.depends_on:
             yield path, f"is not supported in a {type_} analysis"
@@ -119,7 +119,7 @@ def varying(case: Case) -> Iterator[Fault]:
     if constant:
         yield from ((path, f"is not supported in a {type_} analysis") for path in _factors(case))
     laws = {"contact.friction": case.contact.friction_law.variables}
-    laws |= {f"wear.{name}.rate": law.variables for name, law in case.wear.items() if law.rate}
+    laws |= {f"wear.{name}.rate": law.variables for name, law in case.wear.laws.items() if law.rate}
     for path, variables in laws.items():
         friction = path == "contact.friction"
         refused = sorted(variables if friction else variables & {"T", "depth"})

@@ -12,6 +12,7 @@ from ..tables.analyses import Transient
 from ..tables.schema import Case
 from ..values.section import Fault
 from . import analyses, conditions, materials
+from .part_wear import part_wear
 
 _SLIDING = ("steady", "transient", "reciprocating")
 """Analyses of wear by sliding."""
@@ -36,7 +37,7 @@ def check(case: Case) -> None:
             "geometry: planes of symmetry cut a sector from rotating bodies; the shear of "
             "friction, which twists the whole ring, is left out (its heat and wear are not)"
         )
-    for name, law in case.wear.items():
+    for name, law in case.wear.laws.items():
         if law.rate is None and "per" not in law.model_fields_set and friction > 0.0:
             note(
                 f"wear.{name}.per is left out: the coefficient multiplies mu p (friction stress); "
@@ -87,7 +88,7 @@ def _sliding(case: Case) -> Iterator[Fault]:
     if case.contact.nominal_friction == 0.0:
         if heated_by_friction:
             yield "contact.friction", "is 0; friction heat needs friction"
-        for name, law in case.wear.items():
+        for name, law in case.wear.laws.items():
             if law.rate is not None and "mu" in law.variables:
                 yield "contact.friction", f"is 0; wear.{name}.rate depends on mu"
             elif law.rate is None and law.per == "friction-stress":
@@ -211,6 +212,7 @@ _CHECKS = (
     analyses.reciprocating,
     _sliding,
     _spread,
+    part_wear,
     analyses.fretting,
     conditions.heat,
     analyses.varying,

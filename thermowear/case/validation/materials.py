@@ -39,6 +39,8 @@ def materials(case: Case) -> Iterator[Fault]:
             continue
         table: Properties = case.bodies[name]
         path, in_set = f"bodies.{name}", geometry.set_of.get(part)
+        if in_set not in case.bodies[name].materials:
+            in_set = None  # it has a wear law of its own only
         if in_set is not None:
             path, table = f"{path}.materials.{in_set}", case.bodies[name].materials[in_set]
         own = part == name or in_set is not None
@@ -70,9 +72,8 @@ def cell_sets(case: Case) -> Iterator[Fault]:
                 f'needs cell sets of a mesh file (geometry.type = "file"), found {geometry.type!r}',
             )
         elif body.materials and name in geometry.bodies and not body.has_own:
-            named = {geometry.set_of[part] for part in geometry.parts_of(name)[1:]}
             for left in geometry.sets_of(name):
-                if left not in named:
+                if left not in body.materials:
                     yield (
                         f"bodies.{name}.young_modulus",
                         f"missing; cells of {left!r} may be in no set of bodies.{name}.materials",

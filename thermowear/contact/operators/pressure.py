@@ -3,6 +3,7 @@
 The pressure space consists of continuous piecewise Bernstein polynomials, on quadrilaterals tensor
 products in both parameters. They are nonnegative and sum to one, so that coefficients ``λ >= 0``
 give a pressure without tension, and each weak gap is a mean of the gap with nonnegative weights.
+They jump at the borders of materials that wear by different laws, as the steady pressure does.
 """
 
 from __future__ import annotations
@@ -83,14 +84,24 @@ def pressure_basis(pairing: Pairing, degree: int) -> Basis:
     side = pairing.sides[0]
     t = side.t.reshape(len(side.facet), -1)
     values = _on_triangles(degree, t) if side.face.kind == "triangle" else _on_products(degree, t)
-    numbers = side.face.numbers(degree)
+    numbers = side.face.numbers(degree)[side.facet]
+    if jumps(pairing):
+        first, second = pairing.groups
+        group = first * (second.max() + 1) + second
+        each = numbers * (group.max() + 1) + group[:, None]
+        numbers = np.unique(each, return_inverse=True)[1].reshape(numbers.shape)
     starts = np.arange(len(values) + 1) * values.shape[1]
     shape = len(values), numbers.max() + 1
-    entries = values.ravel(), numbers[side.facet].ravel(), starts
+    entries = values.ravel(), numbers.ravel(), starts
     basis = sp.csr_array(entries, shape=shape)
     basis.eliminate_zeros()
     basis = basis[:, pairing.weights @ basis > 0.0]
     return basis if isinstance(side.face, Surface) else basis.toarray()
+
+
+def jumps(pairing: Pairing) -> bool:
+    """True if materials that wear by different laws adjoin on a contact face."""
+    return bool(np.ptp(pairing.groups, axis=1).any())
 
 
 def _on_products(degree: int, t: np.ndarray) -> np.ndarray:

@@ -30,6 +30,7 @@ from ...lagrange import (
 )
 from .facet_tree import FacetTree
 from .facets import FacetSet, FacetTable, gather_facets
+from .part_values import EQUAL, PartValues
 from .projection import project
 from .slender_facets import SampledFacets, sampled
 
@@ -168,10 +169,10 @@ class Surface(FacetSet):
 
 
 def gather_faces(
-    bodies: Bodies, surfaces: tuple[str, str], softness: dict[str, float] | None = None
+    bodies: Bodies, surfaces: tuple[str, str], of_parts: PartValues = EQUAL
 ) -> tuple[Face | Surface, Face | Surface]:
     """Gather both contact faces, closed curves cut; see `gather_face`. Every rank calls."""
-    first, second = (gather_face(bodies, surface, softness) for surface in surfaces)
+    first, second = (gather_face(bodies, surface, of_parts) for surface in surfaces)
     return _opened(first, second), _opened(second, first)
 
 
@@ -187,38 +188,37 @@ def _opened(face: Face | Surface, other: Face | Surface) -> Face | Surface:
     order = order if onward > 0 else order[::-1]
     names = ("nodes", "outward", "rank", "cell", "local_facet", "reversed")
     columns = {name: getattr(face, name)[order] for name in names}
-    face = replace(face, **columns, softness=face.softness_at(order))
+    face = replace(face, **columns, softness=face.softness_at(order), group=face.group_at(order))
     if onward > 0:
         return face
     nodes = face.nodes[:, ::-1]
     return replace(face, nodes=nodes, outward=-face.outward, reversed=~face.reversed)
 
 
-def gather_face(
-    bodies: Bodies, surface: str, softness: dict[str, float] | None = None
-) -> Face | Surface:
+def gather_face(bodies: Bodies, surface: str, of_parts: PartValues = EQUAL) -> Face | Surface:
     """Gather the facets of a surface from all ranks in order; every rank calls.
 
     Parameters
     ----------
     bodies : Bodies
     surface : str
-    softness : dict of str to float, optional
-        ``(1 - ν²) / E`` by part; by default equal for all materials [1/Pa].
+    of_parts : PartValues, optional
+        By default equal for all materials.
     """
     gather, index = _gather_surface if bodies.dim == 3 else _gather_chain, bodies.index_of(surface)
-    return replace(gather(bodies.each[index], surface, softness), body=index)
+    return replace(gather(bodies.each[index], surface, of_parts), body=index)
 
 
-def _gather_chain(body: BodyMesh, surface: str, softness: dict[str, float] | None) -> Face:
-    table = gather_facets(body, surface, _facet_nodes(body.mesh)[1], softness)
+def _gather_chain(body: BodyMesh, surface: str, of_parts: PartValues) -> Face:
+    table = gather_facets(body, surface, _facet_nodes(body.mesh)[1], of_parts)
     order, flip = _chain(table.numbers[:, [0, -1]], table.nodes, surface)
     table, flip = FacetTable(*(column[order] for column in table)), flip[order]
     nodes = np.where(flip[:, None, None], table.nodes[:, ::-1], table.nodes)
     tangent, inward = nodes[:, -1] - nodes[:, 0], table.inside - nodes.mean(axis=1)
     turned = tangent[:, 1] * inward[:, 0] - tangent[:, 0] * inward[:, 1]
     owner = table.rank, table.cell, table.local_facet
-    return Face(nodes, -np.sign(turned), *owner, flip, softness=table.softness, name=surface)
+    outward, soft, group = -np.sign(turned), table.softness, table.group
+    return Face(nodes, outward, *owner, flip, softness=soft, group=group, name=surface)
 
 
 def _chain(ends: np.ndarray, nodes: np.ndarray, surface: str) -> tuple[np.ndarray, np.ndarray]:
@@ -258,10 +258,10 @@ def _disconnected_message(surface: str) -> str:
     )
 
 
-def _gather_surface(body: BodyMesh, surface: str, softness: dict[str, float] | None) -> Surface:
+def _gather_surface(body: BodyMesh, surface: str, of_parts: PartValues) -> Surface:
     """Curved facets in the order of their cells in the mesh file."""
     kind, nodes_of_facet = _facet_nodes(body.mesh)
-    table = gather_facets(body, surface, nodes_of_facet, softness)
+    table = gather_facets(body, surface, nodes_of_facet, of_parts)
     order = np.lexsort((table.local_facet, table.original_cell))
     table = FacetTable(*(column[order] for column in table))
     at_corners = corner_nodes(order_of(kind, table.nodes.shape[1]), kind)
@@ -277,6 +277,7 @@ def _gather_surface(body: BodyMesh, surface: str, softness: dict[str, float] | N
         table.numbers[:, at_corners],
         kind=kind,
         softness=table.softness,
+        group=table.group,
         name=surface,
     )
 

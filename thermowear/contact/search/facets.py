@@ -14,6 +14,7 @@ from ...bulk.body_mesh import BodyMesh
 from ...compat import geometry_dofmap
 from ...errors import CaseError
 from ...lagrange import corner_nodes, lattice, lobatto, on_lattice, order_of
+from .part_values import PartValues
 from .smooth_normals import across, corner_corrections, smooth_normals
 
 
@@ -68,6 +69,9 @@ class FacetSet(ABC):
         Name of the surface.
     wears : bool
         True if the softness is that of wear, see `common_face`.
+    group : int or ndarray of int, shape (n_facets,)
+        Group of equally wearing materials that each facet belongs to; pressures may jump between
+        them.
     """
 
     nodes: np.ndarray
@@ -81,6 +85,7 @@ class FacetSet(ABC):
     name: str = "the contact face"
     wears: bool = False
     body: int = 0
+    group: int | np.ndarray = 0
 
     @property
     @abstractmethod
@@ -132,6 +137,10 @@ class FacetSet(ABC):
     def softness_at(self, facet: np.ndarray) -> np.ndarray:
         """Softness at facets, shape (n,) [1/Pa]."""
         return np.broadcast_to(self.softness, len(self.nodes))[facet]
+
+    def group_at(self, facet: np.ndarray) -> np.ndarray:
+        """Group of materials at facets, shape (n,)."""
+        return np.broadcast_to(self.group, len(self.nodes))[facet]
 
     def stretch(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Length per parameter or area per parameter area, shape (n,) [m or m²]."""
@@ -229,10 +238,11 @@ class FacetTable(NamedTuple):
     cell: np.ndarray
     local_facet: np.ndarray
     softness: np.ndarray
+    group: np.ndarray
 
 
 def gather_facets(
-    body: BodyMesh, surface: str, nodes_of_facet: np.ndarray, softness: dict[str, float] | None
+    body: BodyMesh, surface: str, nodes_of_facet: np.ndarray, of_parts: PartValues
 ) -> FacetTable:
     """Gather the facets of a surface from the ranks that own their cells; every rank calls.
 
@@ -242,8 +252,7 @@ def gather_facets(
     surface : str
     nodes_of_facet : ndarray of int, shape (n_facets, n_nodes)
         Indices of the nodes of each facet of a cell.
-    softness : dict of str to float or None
-        By part; None: 1.
+    of_parts : PartValues
     """
     mesh, topology = body.mesh, body.mesh.topology
     tdim, fdim = topology.dim, topology.dim - 1
@@ -254,10 +263,9 @@ def gather_facets(
     local = np.array([np.flatnonzero(to_facets.links(c) == f)[0] for c, f in mine], dtype=np.int32)
     of_cells, x = geometry_dofmap(mesh)[cells], mesh.geometry.x[:, :tdim]
     of_facets = np.take_along_axis(of_cells, nodes_of_facet[local], axis=1)
-    soft = np.ones(len(cells))
-    if softness is not None:
-        of_parts = np.array([softness.get(part, np.nan) for part in body.names])
-        soft = of_parts[body.parts_of_cells(cells)]
+    part, other = body.parts_of_cells(cells), np.nan if of_parts.softness else 1.0
+    soft = np.array([of_parts.softness.get(name, other) for name in body.names])
+    group = np.array([of_parts.group.get(name, 0) for name in body.names])
     columns = FacetTable(
         x[of_facets],
         np.asarray(mesh.geometry.input_global_indices)[of_facets],
@@ -266,7 +274,8 @@ def gather_facets(
         np.full(len(cells), mesh.comm.rank),
         cells,
         local,
-        soft,
+        soft[part],
+        group[part],
     )
     parts = mesh.comm.allgather(columns)
     table = FacetTable(*(np.concatenate(column) for column in zip(*parts, strict=True)))

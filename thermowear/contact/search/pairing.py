@@ -32,6 +32,8 @@ from .refinement import OVERHANG_TOLERANCE, SLIVER, Rule, ambiguity_message, rul
 
 _COINCIDENCE_TOLERANCE = 1e-10
 """Largest distance of coincident points, relative to the size of the face."""
+_AT_EDGE = 1e-2
+"""Largest distance of points at the edge of a facet, relative to it."""
 _MAX_OVERLAP = 1e-3
 """Fraction of a facet that may be covered twice, by rounding and curved edges."""
 
@@ -85,6 +87,9 @@ class Pairing:
         Points on body 1 and on body 2.
     unpaired : float
         Fraction of the face of body 1 without an opposite face, which cannot touch.
+    groups : ndarray of int, shape (2, n)
+        Group of equally wearing materials of body 1 and of body 2 at each point. Points at a border
+        of groups exist once for each.
     pieces : Rule
         Quadrature rule on all pieces of the facets of body 1, before merging of points.
     """
@@ -97,6 +102,7 @@ class Pairing:
     share: np.ndarray
     sides: tuple[PairedFace, PairedFace]
     unpaired: float
+    groups: np.ndarray
     pieces: Rule
 
     @property
@@ -184,8 +190,9 @@ def paired(
     position = face_1.position(facet, t)
     # on a curve by arc length: both ends of a closed one coincide in space
     places = on_face if isinstance(face_1, Surface) else position[:, None]
-    group, first = _groups(places, _COINCIDENCE_TOLERANCE * face_1.extent)
-    summed = np.column_stack([np.bincount(group, n) for n in pairs.normals.T])
+    groups = _groups(face_1, facet, t, face_2.group_at(pairs.facet))
+    point, first = _merged(places, _COINCIDENCE_TOLERANCE * face_1.extent, groups)
+    summed = np.column_stack([np.bincount(point, n) for n in pairs.normals.T])
     normals = summed / np.linalg.norm(summed, axis=1, keepdims=True)
     sides = (
         PairedFace(face_1, facet[first], t[first]),
@@ -194,19 +201,58 @@ def paired(
     return Pairing(
         points=on_common[first],
         position=position[first],
-        weights=np.bincount(group, weights),
+        weights=np.bincount(point, weights),
         normals=normals,
         gap=pairs.gap[first],
         share=pairs.share[first],
         sides=sides,
         unpaired=max(unpaired, 0.0),
+        groups=groups[:, first],
         pieces=pieces,
     )
 
 
-def _groups(points: np.ndarray, near: float) -> tuple[np.ndarray, np.ndarray]:
-    """Group of each point, numbered in the order of appearance, and the first point of each."""
+def _groups(
+    face_1: Face | Surface, facet: np.ndarray, t: np.ndarray, opposite_group: np.ndarray
+) -> np.ndarray:
+    """Groups of the materials of body 1 and of body 2 at points (n,), shape (2, n).
+
+    Both are those of the facet of body 1: its inner points lie opposite to one group of body 2.
+
+    Raises
+    ------
+    CaseError
+        If they lie opposite to several.
+    """
+    if not opposite_group.any():
+        return np.array([face_1.group_at(facet), opposite_group])
+    t = t.reshape(len(t), -1)
+    inner = np.all((t > _AT_EDGE) & (t < 1 - _AT_EDGE), axis=1)
+    if face_1.kind == "triangle":
+        inner &= t.sum(axis=1) < 1 - _AT_EDGE
+    low, high = np.full(len(face_1.nodes), opposite_group.max()), np.zeros(len(face_1.nodes), int)
+    np.minimum.at(low, facet[inner], opposite_group[inner])
+    np.maximum.at(high, facet[inner], opposite_group[inner])
+    if np.any(low[facet] < high[facet]):
+        raise CaseError(
+            f"geometry.contact: elements of {face_1.name} lie across a border between materials of "
+            "the other face that wear by different laws; end elements of both faces at the border"
+        )
+    return np.array([face_1.group_at(facet), low[facet]])
+
+
+def _merged(points: np.ndarray, near: float, groups: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Merge coincident points of the same groups of materials.
+
+    Returns
+    -------
+    point : ndarray of int, shape (n,)
+        Merged point of each, in the order of appearance.
+    first : ndarray of int, shape (n_merged,)
+        First point of each merged one.
+    """
     pairs = cKDTree(points).query_pairs(near, output_type="ndarray")
+    pairs = pairs[np.all(groups[:, pairs[:, 0]] == groups[:, pairs[:, 1]], axis=0)]
     links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
     _, label = connected_components(links, directed=False)
     _, first, group = np.unique(label, return_index=True, return_inverse=True)

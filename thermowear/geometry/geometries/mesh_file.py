@@ -115,7 +115,7 @@ class MeshFile(HalvableGeometry):
     )
     surface_names: dict[str, str] = Field(alias="surfaces", default={})
     contact_area_given: Area | None = Field(alias="contact_area", default=None)
-    _with_material: dict[str, tuple[str, ...]] = PrivateAttr(default={})
+    _with_material: dict[str, dict[str, str]] = PrivateAttr(default={})
     _in_space: bool = PrivateAttr(default=False)
     _measured: float | None = PrivateAttr(default=None)
 
@@ -232,7 +232,7 @@ class MeshFile(HalvableGeometry):
         names = self.body_names[body]
         return (names,) if isinstance(names, str) else names
 
-    def with_cell_sets(self, sets: dict[str, tuple[str, ...]]) -> MeshFile:
+    def with_cell_sets(self, sets: dict[str, dict[str, str]]) -> MeshFile:
         result = self.model_copy()
         result._with_material = {body: sets[body] for body in self.bodies if body in sets}
         return result
@@ -246,9 +246,9 @@ class MeshFile(HalvableGeometry):
         ]
         tagged = assemble(contents, bodies, list(self._purposes().values()))
         sets = [
-            Named(f"{body}.{name}", (name,), f"bodies.{body}.materials.{name}", index)
+            Named(f"{body}.{name}", (name,), path, index)
             for index, body in enumerate(self.bodies)
-            for name in self._with_material.get(body, ())
+            for name, path in self._with_material.get(body, {}).items()
         ]
         return divided(tagged, contents, bodies, sets)
 

@@ -40,15 +40,16 @@ class PowerSum(RateSum):
     Attributes
     ----------
     factors : ndarray, shape (m, n)
-    exponents : ndarray, shape (m,)
+    exponents : ndarray, shape (m,) or (m, n)
     """
 
     factors: np.ndarray
     exponents: np.ndarray
 
     def terms(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        terms = self.factors * pressure ** self.exponents[:, None]
-        return terms, self.exponents[:, None] * terms / pressure
+        exponents = np.atleast_2d(self.exponents.T).T
+        terms = self.factors * pressure**exponents
+        return terms, exponents * terms / pressure
 
     def scaled(self, pressure: np.ndarray, value: float) -> PowerSum:
         return PowerSum(self.terms(pressure)[0] / value, self.exponents)

@@ -163,8 +163,9 @@ def _rate_sum(laws: Sequence[BoundLaw], factors: np.ndarray, weights: np.ndarray
     if len(powers) < len(laws):
         return LawSum(laws, weights * factors, np.ones(factors.shape[1]))
     Z = [law.factor(bound.state.v) for law, bound in zip(powers, laws, strict=True)]
-    exponents = np.array([law.pressure_exponent for law in powers])
-    return PowerSum(weights * factors * np.reshape(Z, factors.shape), exponents)
+    exponents = [np.reshape(law.pressure_exponent, -1) for law in powers]  # (1,), or by point
+    of_each = np.array(np.broadcast_arrays(*exponents)).reshape(len(powers), -1)
+    return PowerSum(weights * factors * np.reshape(Z, factors.shape), of_each)
 
 
 def _in_closed_form(law: Law) -> TypeGuard[PowerWear]:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import replace
 
-from ...contact.search.face import Face
+import numpy as np
+from scipy.spatial import cKDTree
+
+from ...contact.search.face import Face, Surface
 from ...geometry.cad.design import Design
 from ...laws.principle.least_worn import least_worn
 from ..interface.body_state import body_state
@@ -58,7 +61,16 @@ def steady_design(system: System, body: int) -> Design:
         shape_along_press=np.nanmax(height_along) - height_along,
         depth=depth,
     )
-    return _from_end_to_end(design, side.face) if isinstance(side.face, Face) else design
+    face = side.face
+    return _from_end_to_end(design, face) if isinstance(face, Face) else _single(design, face)
+
+
+def _single(design: Design, face: Surface) -> Design:
+    """Design with one of the coincident points at a border of materials."""
+    pairs = cKDTree(design.points).query_pairs(_SAME * face.extent, output_type="ndarray")
+    rows = np.setdiff1d(np.arange(len(design.points)), pairs[:, 1])
+    columns = "points", "s", "normals", "shape", "shape_along_press", "depth"
+    return replace(design, **{name: getattr(design, name)[rows] for name in columns})
 
 
 def _from_end_to_end(design: Design, face: Face) -> Design:

@@ -12,6 +12,7 @@ from numpy.linalg import LinAlgError
 
 from ...balances import judged
 from ...bulk.multigrid_solver import MultigridSolver
+from ...contact.operators.pressure import jumps
 from ...errors import CaseError, ComputationError
 from ...model.analyses import (
     Analysis,
@@ -38,6 +39,7 @@ from .static import initial, stability, steady
 from .transient import TransientHistory
 
 _UNPAIRED = 1e-6
+_CYCLIC = "fretting", "reciprocating"
 _NOT_ESTIMATED = "the discretisation error is not estimated where bodies are solved by multigrid"
 _SKIPPED = {"all": "not estimated where bodies are solved by multigrid"}
 
@@ -116,6 +118,11 @@ def analyse(
     Starts anew, or from the checkpoint of an analysis of the same system.
     """
     choice = system.choice
+    if analysis.type in _CYCLIC and jumps(system.pairing):
+        raise CaseError(
+            f"a {analysis.type} analysis does not support contact faces of several materials that "
+            "wear by different laws"
+        )
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:
             observer.note(note)

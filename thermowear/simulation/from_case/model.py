@@ -18,22 +18,18 @@ from ...case.tables.tabulated import (
     TemperatureHistory,
     TemperatureTable,
 )
-from ...case.tables.wear import BodyWearTable
+from ...case.tables.wear import BodyWearTable, RateTable
 from ...case.values.section import Section
 from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh
 from ...laws.coefficients import Multipliers
-from ...laws.distribution import Distribution, InPlace
+from ...laws.distribution import IN_PLACE, Distribution, InPlace
 from ...laws.interfaces import Law
 from ...laws.power_wear import PowerWear
 from ...model.body import Body, Material
 from ...model.conditions import Heat, Holder, Motion
-from ...model.interface import (
-    ContactMethod,
-    FaceWear,
-    HardnessConductance,
-    Interface,
-)
+from ...model.face_wear import CompositeWear, FaceWear, Wear
+from ...model.interface import ContactMethod, HardnessConductance, Interface
 from ...model.model import Discretisation, Model, Zone
 from ...model.tracks import CircularTrack, EvenTrack, PinTrack, TabulatedTrack, Track
 
@@ -211,17 +207,28 @@ def _conductance(case: Case) -> Law | HardnessConductance | None:
     return None if given is None else law_of(given, "heat.conductance", 0.0)
 
 
-def _wear(case: Case) -> dict[int, FaceWear]:
+def _wear(case: Case) -> dict[int, Wear]:
     """Wear of the faces by index; bodies without a wear table do not wear."""
     return {
-        index: _face_wear(case, case.wear[name])
+        index: _body_wear(case, name, case.wear[name])
         for index, name in enumerate(case.geometry.bodies)
         if name in case.wear
     }
 
 
-def _face_wear(case: Case, wear: BodyWearTable) -> FaceWear:
-    factors, track = wear.factor.multipliers, _track(case, wear)
+def _body_wear(case: Case, name: str, wear: BodyWearTable) -> Wear:
+    """Wear of a body by one law, or by those of its parts; the others have the body's own."""
+    if not wear.materials:
+        return _face_wear(case, wear, _track(case, wear))
+    parts = case.geometry.parts_of(name)
+    found = dict.fromkeys(parts, _face_wear(case, wear)) if wear.has_law else {}
+    own = {case.part_named(name, key): law for key, law in wear.materials.items()}
+    found |= {part: _face_wear(case, law) for part, law in own.items() if part is not None}
+    return CompositeWear(found)
+
+
+def _face_wear(case: Case, wear: RateTable, track: Distribution | Track = IN_PLACE) -> FaceWear:
+    factors = wear.factor.multipliers
     if wear.law is not None:
         return FaceWear(wear.law, factors, track=track)
     κ, b, a = wear.coefficient_si(), wear.pressure_exponent, wear.velocity_exponent

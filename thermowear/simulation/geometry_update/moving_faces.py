@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...bulk.mesh_motion import serial_extension
-from ...contact.operators.pressure import unresolved_gap
+from ...contact.operators.pressure import jumps, unresolved_gap
 from ...contact.search.face import Surface
 from ...contact.search.pairing import Pairing
 from ...contact.search.projection import ray_intersections
@@ -32,6 +32,11 @@ from ..results.recording import snapshot_at
 from ..system.system import System
 from ..system.worn_geometry import WornGeometry, along
 
+STEPPED = (
+    "wear: both faces wear in place, and materials side by side share it in different ratios; no "
+    "mesh follows the step between them, so that all wear remains in the gap (small wear)"
+)
+"""Note if `steps_grow`."""
 _WALL_SLOPE = 0.2
 """Largest slope of groove walls in a mesh."""
 
@@ -93,6 +98,16 @@ class MovingFaces:
         distances = before, side.face.sizes.sum() - before
         ends = zip(held[[0, -1]], distances, strict=True)
         return np.minimum(*(np.where(stays, distance, np.inf) for stays, distance in ends))
+
+
+def steps_grow(system: System) -> bool:
+    """True if wear makes a step in the common face, which no mesh can follow.
+
+    Where both faces wear in place, and one of them by different laws side by side, they share the
+    steady wear in different ratios.
+    """
+    in_place = [isinstance(spread, InPlace) for spread in system.spreads.values()]
+    return jumps(system.pairing) and sum(in_place) > 1
 
 
 def _unworn(system: System, bodies: list[int]) -> WornGeometry:

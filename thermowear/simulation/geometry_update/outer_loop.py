@@ -25,7 +25,7 @@ from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import updated
-from .moving_faces import MovingFaces, smoothed_wear
+from .moving_faces import STEPPED, MovingFaces, smoothed_wear, steps_grow
 from .wider_zone import UpdateCounts, meshed_wider, wider_zone
 
 _CHANGE = 5e-3
@@ -36,7 +36,6 @@ _ROOM = 5.0
 """Upper limit of the allowed fraction, as a multiple of the automatic one."""
 _TILT = 0.1
 """Weight of the element tilt: depth difference of its ends relative to its size."""
-
 Principle = Callable[[System], SteadyState | None]
 """Steady state that a system approaches; None if there is none."""
 
@@ -143,9 +142,12 @@ class OuterLoop:
         self._observer = observer
         self._narrow = ""
         self.now = self._period(problem)
+        if np.isfinite(self.allowed) and self.now.gap_wear is None:
+            observer.note(STEPPED)
 
     def _period(self, problem: InterfaceProblem) -> MeshPeriod:
-        kept = GapWear(problem.system) if np.isfinite(self.allowed) else None
+        follows = np.isfinite(self.allowed) and not steps_grow(problem.system)
+        kept = GapWear(problem.system) if follows else None
         return MeshPeriod(problem, self._principle(problem.system), kept)
 
     def restart_data(self) -> tuple:

@@ -75,9 +75,9 @@ def summarise(end: Snapshot, time: float) -> dict:
         "wear_volume_1_m3": float(volumes[0]),
         "wear_volume_2_m3": float(volumes[1]),
         "wear_coefficient_per": {
-            model.bodies[index].name: wear.per
+            name: per
             for index, wear in model.interface.wear.items()
-            if wear.per is not None
+            for name, per in wear.stress_by_part(model.bodies[index].name).items()
         },
     }
     about = _passing(end, time) | _guide_reactions(system, p) | _rotations(end)

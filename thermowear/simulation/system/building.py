@@ -16,6 +16,7 @@ from ...contact.operators.rigid_motion import RigidMode, hold, sliding
 from ...contact.operators.traces import gap_trace
 from ...contact.search.face import gather_faces
 from ...contact.search.pairing import Pairing
+from ...contact.search.part_values import PartValues
 from ...geometry.mesh.held import check_held, free_motions
 from ...geometry.mesh.mixed import AnyMesh
 from ...model.model import Model, Zone
@@ -24,6 +25,8 @@ from ...timer import Phases
 from .contact_points import (
     contact_points,
     facing_parts,
+    groups_of_parts,
+    require_laws,
     softness_of_parts,
     worn_contact_points,
 )
@@ -150,8 +153,10 @@ def _check_held(model: Model, mesh: AnyMesh) -> None:
 def _paired(
     model: Model, comm, kinematics: Kinematics, bodies: Bodies, worn: WornGeometry | None
 ) -> tuple[Pairing, np.ndarray]:
-    softness, wears = softness_of_parts(model), bool(model.interface.wearing_in_place)
-    gathered = gather_faces(bodies, model.interface.faces, softness)
+    of_parts = PartValues(softness_of_parts(model), groups_of_parts(model))
+    gathered = gather_faces(bodies, model.interface.faces, of_parts)
+    require_laws(model, bodies, gathered)
+    wears = bool(model.interface.wearing_in_place)
     faces = [replace(face, wears=wears) for face in gathered]
     if worn is None:
         return contact_points(model, comm, kinematics, *faces)

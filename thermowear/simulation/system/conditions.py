@@ -199,17 +199,17 @@ class ConditionModel:
 
         Each of shape (n_wearing, n), stacked. A state variable that a law does not use is 0.
         """
-        wearing = self._interface.wear.items()
+        wearing, groups = self._interface.wear.items(), self._system.pairing.groups
         factors, used, depths = result = np.zeros((3, len(wearing), len(pressure)))
+        relative = friction / self._interface.nominal_friction if self._friction_varies else None
         for row, (index, wear) in enumerate(wearing):
-            own = temperatures[index]
-            factors[row] = wear.factors.value(LocalState(pressure, speed, own))
-            if wear.friction_exponent and self._friction_varies:
-                nominal = self._interface.nominal_friction
-                factors[row] *= (friction / nominal) ** wear.friction_exponent
-            if "T" in wear.law.variables:
-                used[row] = own
-            if "depth" in wear.law.variables and depth is not None:
+            at = LocalState(pressure, speed, temperatures[index])
+            for group, each in enumerate(wear.each):
+                np.copyto(factors[row], each.factor(at, relative), where=groups[index] == group)
+            variables = self._system.laws[index].variables
+            if "T" in variables:
+                used[row] = temperatures[index]
+            if "depth" in variables and depth is not None:
                 depths[row] = depth[row]
         return result
 

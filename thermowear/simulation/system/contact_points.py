@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ...bulk.bodies import Bodies
 from ...bulk.kinematics import Kinematics
-from ...contact.operators.pressure import pressure_basis
+from ...contact.operators.pressure import jumps, pressure_basis
 from ...contact.search.face import Face, Surface
 from ...contact.search.pairing import Pairing, pair, paired
 from ...contact.search.projection import ray_intersections
 from ...contact.search.refinement import OVERHANG_TOLERANCE, SLIVER
 from ...contact.wear.worn_face import directions_between
+from ...errors import CaseError
 from ...laws.motions import RigidMotion
 from ...model.body import Facing
 from ...model.model import Model
@@ -44,6 +46,19 @@ def softness_of_parts(model: Model) -> dict[str, float]:
         share = max(wearing.get(index, 0.0) / largest, _LEAST)
         softness |= dict.fromkeys(body.parts, share)
     return softness
+
+
+def groups_of_parts(model: Model) -> dict[str, int]:
+    """Group of equally wearing materials of each part of the bodies; -1 without a wear law.
+
+    Zero for all parts of a body that wears by one law, or not at all.
+    """
+    groups = {part: 0 for body in model.bodies for part in body.parts}
+    for index, wear in model.interface.wear.items():
+        for part in model.bodies[index].parts:
+            group = wear.group_of(part)
+            groups[part] = -1 if group is None else group
+    return groups
 
 
 def contact_points(
@@ -129,6 +144,7 @@ def _points(
     degree = model.discretisation.degree
     if model.interface.pressure_degree == "lobatto":  # at the nodes of body 1's facets
         pairing = pair(face_1, face_2, kinematics, degree + 1, refine=False)
+        _check_jumps(model, pairing)
         return pairing, np.eye(len(pairing.weights))
     pairing = pair(
         face_1,
@@ -139,7 +155,43 @@ def _points(
         max_overhang=max_overhang,
         comm=comm,
     )
+    _check_jumps(model, pairing)
     return pairing, pressure_basis(pairing, model.pressure_degree)
+
+
+def _check_jumps(model: Model, pairing: Pairing) -> None:
+    """Reject settings that do not determine a pressure with jumps between materials."""
+    degree, method = model.discretisation.degree, model.interface.method.name
+    if not jumps(pairing):
+        return
+    where = "where the materials of a contact face wear by different laws the pressure jumps"
+    if method != "condensed":
+        raise CaseError(f'contact.method: {method!r} is not supported; {where}; use "condensed"')
+    if degree < 2:
+        raise CaseError(f"mesh.degree: found {degree}; {where}, which needs 2 or more")
+    if model.pressure_degree >= degree:
+        raise CaseError(
+            f"contact.pressure_degree: {where}, which needs a degree below mesh.degree ({degree})"
+        )
+
+
+def require_laws(model: Model, bodies: Bodies, faces: Sequence[Face | Surface]) -> None:
+    """Reject parts of a wearing face without a wear law. Every rank calls.
+
+    Raises
+    ------
+    CaseError
+    """
+    for body, face in zip(model.bodies, faces, strict=True):
+        parts = _parts_of_facets(bodies, face)
+        without = parts[face.group_at(np.arange(len(parts))) < 0]
+        if len(without):
+            part = bodies.names[without[0]]
+            own = f"materials.{part.removeprefix(f'{body.name}.')}"
+            raise CaseError(
+                f"wear.{body.name}.{'coefficient' if part == body.name else own}: missing; the "
+                f"contact face {face.name} has cells of this part"
+            )
 
 
 def facing_parts(bodies: Bodies, pairing: Pairing) -> Facing:

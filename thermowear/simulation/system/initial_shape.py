@@ -16,6 +16,7 @@ from ...user_files import read_text
 _KEY = "geometry.initial_shape"
 _BEYOND = 1e-6  # of the length of the face
 _UNIT = 300.0  # times that length: a table of a longer face passes, one in millimetres does not
+_STEP = 0.01  # of the range of shapes: left at a border of materials by the running-in
 _LARGEST_FILE = 100_000_000  # bytes
 _LARGEST_NUMBER = 1e100  # differences of larger ones overflow in interpolation
 
@@ -88,9 +89,12 @@ def _curve(path: str, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if not np.all(np.abs(points) < _LARGEST_NUMBER):
         raise CaseError(f"{_KEY}: {path} has entries that are no numbers, or beyond 1e100 m")
     s, shape = points.T
-    twice = s[1:][np.diff(s) == 0.0]
-    if len(twice):
-        raise CaseError(f"{_KEY}: {path} has different shapes at s_m = {twice[0]:.6g}")
+    twice = np.flatnonzero(np.diff(s) == 0.0)
+    step = shape[twice + 1] - shape[twice]
+    if len(twice) and step.max() > _STEP * np.ptp(shape):
+        raise CaseError(f"{_KEY}: {path} has different shapes at s_m = {s[twice[0]]:.6g}")
+    shape[twice] += step / 2
+    s, shape = np.delete(s, twice + 1), np.delete(shape, twice + 1)
     if len(s) < 2:
         raise CaseError(f"{_KEY}: {path} has one place only; a shape needs two")
     return s, shape

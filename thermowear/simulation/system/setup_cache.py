@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from ...model.model import Model, Zone
-from .contact_points import softness_of_parts
+from .contact_points import groups_of_parts, softness_of_parts
 
 Part = TypeVar("Part")
 
@@ -75,7 +75,7 @@ def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
     spaces = model.discretisation.degree, interface.pressure_degree
     mesh = (section, supports, model.meshes, spaces, zone)
     shares = softness_of_parts(model), bool(interface.wearing_in_place)
-    points = (mesh, interface.initial_shape, shares)
+    points = (mesh, interface.initial_shape, shares, groups_of_parts(model))
     strained = {part: (m.young_modulus, m.poisson_ratio) for part, m in materials.items()}
     if heat is None:
         return CacheKeys(mesh, points, (points, strained), ())

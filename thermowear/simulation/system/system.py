@@ -150,7 +150,10 @@ class System:
     @cached_property
     def laws(self) -> dict[int, Law]:
         """Wear laws by index of the body (0 is body 1); bodies that do not wear are left out."""
-        return {index: wear.law for index, wear in self.model.interface.wear.items()}
+        return {
+            index: wear.law_at(self.pairing.groups[index])
+            for index, wear in self.model.interface.wear.items()
+        }
 
     @cached_property
     def spreads(self) -> dict[int, Distribution]:

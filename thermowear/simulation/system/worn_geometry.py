@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,6 +15,8 @@ from ...geometry.mesh.mixed import AnyMesh
 from ...geometry.moving.new_face import NewFace
 
 _SAME = 1e-9
+_TWICE = 1e-12
+"""Largest distance of the same position on two facets, relative to a facet."""
 
 
 @dataclass(frozen=True)
@@ -86,12 +89,16 @@ class WornGeometry:
     carrying_error: float = 0.0
 
     def carried(self, values: np.ndarray, pairing: Pairing) -> np.ndarray:
-        """Interpolate values (..., n_before) to the points of a new pairing of the same faces."""
+        """Interpolate values (..., n_before) to the points of a new pairing of the same faces.
+
+        In a section not across borders of materials, where points exist twice.
+        """
         before, after = self.at, along(pairing)
         if before.shape == after.shape and np.abs(before - after).max() < _SAME:
             return values
-        curve = scipy.interpolate.Akima1DInterpolator(before, values, axis=-1, method="makima")
-        return curve(np.clip(after, before[0], before[-1]))
+        parts = zip(_between_jumps(before), _between_jumps(after), strict=True)
+        found = [_interpolated(before[old], values[..., old], after[new]) for old, new in parts]
+        return np.concatenate(found, axis=-1)
 
     def moved(self, pairing: Pairing) -> np.ndarray:
         """Wear depths removed from both meshes at the points of a pairing, shape (2, n) [m]."""
@@ -102,6 +109,17 @@ class WornGeometry:
             behind = new.on_curve(side.facet + side.t) - side.face.points(side.facet, side.t)
             depth[index] += np.einsum("ni,ni->n", behind, out)
         return depth
+
+
+def _between_jumps(at: np.ndarray) -> list[slice]:
+    """Ranges of increasing positions (n,) between those that occur twice."""
+    ends = [0, *(np.flatnonzero(np.diff(at) <= _TWICE) + 1), len(at)]
+    return [slice(*ends) for ends in itertools.pairwise(ends)]
+
+
+def _interpolated(before: np.ndarray, values: np.ndarray, after: np.ndarray) -> np.ndarray:
+    curve = scipy.interpolate.Akima1DInterpolator(before, values, axis=-1, method="makima")
+    return curve(np.clip(after, before[0], before[-1]))
 
 
 def along(pairing: Pairing) -> np.ndarray:

@@ -1,0 +1,30 @@
+"""Consistency checks of a contact face whose materials wear by different laws."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..tables.schema import Case
+from ..values.section import Fault
+
+_CYCLIC = ("fretting", "reciprocating")
+
+
+def part_wear(case: Case) -> Iterator[Fault]:
+    """Wear laws of parts name parts of the body, which wears in place, in one direction."""
+    geometry, type_ = case.geometry, case.analysis.type
+    for body, wear in case.wear.items():
+        path = f"wear.{body}.materials"
+        if not wear.materials or body not in geometry.bodies:
+            continue
+        known = [geometry.set_of.get(part, part) for part in geometry.parts_of(body)[1:]]
+        if not known:
+            yield path, f"{geometry.type!r} has no parts of {body}; leave it out"
+            continue
+        for name in wear.materials:
+            if case.part_named(body, name) is None:
+                yield f"{path}.{name}", f"unknown part; must be one of: {', '.join(known)}"
+        if type_ in _CYCLIC:
+            yield path, f"is not supported in a {type_} analysis"
+        if wear.spread != "in-place":
+            yield path, f'requires spread = "in-place"; found {wear.spread!r}'

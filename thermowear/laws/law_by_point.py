@@ -1,0 +1,71 @@
+"""Wear law of a face of several materials: one of several laws at each contact point."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .interfaces import Law, LocalState
+from .power_wear import PowerWear
+
+
+@dataclass(frozen=True, eq=False)
+class LawByPoint:
+    """One of several laws at each contact point.
+
+    Attributes
+    ----------
+    laws : tuple of Law
+    at : ndarray of int, shape (n,)
+        Index of the law at each point.
+    """
+
+    laws: tuple[Law, ...]
+    at: np.ndarray
+
+    @property
+    def variables(self) -> frozenset[str]:
+        """Variables of any of the laws."""
+        return frozenset().union(*(law.variables for law in self.laws))
+
+    def value(self, at: LocalState) -> np.ndarray:
+        """Depth worn per time at the points [m/s]; each law only sees its own points."""
+        return self._each(at, [law.value for law in self.laws])
+
+    def slope(self, at: LocalState) -> np.ndarray:
+        """Derivative with respect to the pressure [m/(s Pa)]."""
+        return self._each(at, [law.slope for law in self.laws])
+
+    def _each(
+        self, at: LocalState, functions: Sequence[Callable[[LocalState], np.ndarray]]
+    ) -> np.ndarray:
+        result = np.zeros(len(self.at))
+        state = [np.broadcast_to(values, self.at.shape) for values in at]
+        for index, function in enumerate(functions):
+            own = self.at == index
+            if own.any():
+                result[own] = function(LocalState(*(values[own] for values in state)))
+        return result
+
+
+def law_by_point(laws: Sequence[Law], at: np.ndarray) -> Law:
+    """Law of a face from the laws of its materials; a power law if all of them are.
+
+    Parameters
+    ----------
+    laws : sequence of Law
+    at : ndarray of int, shape (n,)
+        Index of the law at each contact point.
+    """
+    if len(laws) == 1:
+        return laws[0]
+    powers = [law for law in laws if type(law) is PowerWear]  # a derived class may override it
+    if len(powers) < len(laws):
+        return LawByPoint(tuple(laws), at)
+    return PowerWear(
+        np.array([law.coefficient for law in powers])[at],
+        np.array([law.pressure_exponent for law in powers])[at],
+        np.array([law.velocity_exponent for law in powers])[at],
+    )

@@ -92,7 +92,8 @@ def _curve(path: str, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     twice = np.flatnonzero(np.diff(s) == 0.0)
     step = shape[twice + 1] - shape[twice]
     if len(twice) and step.max() > _STEP * np.ptp(shape):
-        raise CaseError(f"{_KEY}: {path} has different shapes at s_m = {s[twice[0]]:.6g}")
+        place = s[twice[step.argmax()]]
+        raise CaseError(f"{_KEY}: {path} has different shapes at s_m = {place:.6g}")
     shape[twice] += step / 2
     s, shape = np.delete(s, twice + 1), np.delete(shape, twice + 1)
     if len(s) < 2:

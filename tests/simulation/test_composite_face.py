@@ -112,6 +112,18 @@ def test_pressure_before_running_in(case):
 
 
 @pytest.mark.parametrize("case", [PLANE, SPACE, Composite("axisymmetric")])
+def test_only_the_other_body_wears(case):
+    """
+    requirement: pressures and wear rates are those of the materials of body 2.
+    """
+    case = replace(case, bodies=("lower",))
+    result = case.run(STEADY)
+    np.testing.assert_allclose(result.interface.pressure, case.pressure(result), rtol=1e-9)
+    np.testing.assert_allclose(result.interface.wear_rate_2, case.effective * PRESSURE * SPEED)
+    assert not result.interface.wear_rate_1.any()
+
+
+@pytest.mark.parametrize("case", [PLANE, SPACE, Composite("axisymmetric")])
 def test_hot_steady_state(case):
     """
     requirement: with friction heat the steady pressures are the same, and the balances hold.

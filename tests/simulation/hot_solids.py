@@ -60,6 +60,7 @@ def hot_blocks(meshes, solver="auto", conductance=2e4, degree=2, free=("z",), he
         interfaces=(
             Interface(
                 faces=("upper_face", "lower_face"),
+                motion=Motion(velocity=SPEED),
                 friction=Constant(FRICTION),
                 conductance=None if conductance is None else Constant(conductance),
                 wear={0: wear},
@@ -76,6 +77,5 @@ def hot_blocks(meshes, solver="auto", conductance=2e4, degree=2, free=("z",), he
         ),
         meshes=meshes,
         discretisation=Discretisation(degree, solver=solver),
-        motion=Motion(velocity=SPEED),
         heat=Heat(cooling=COOLING) if heat is None else heat,
     )

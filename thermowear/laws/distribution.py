@@ -8,6 +8,7 @@ fraction of the local rate, and means shared by several points.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -48,13 +49,13 @@ class Distribution:
 
     Attributes
     ----------
-    share : float
+    share : float or ndarray, shape (n,)
         Fraction of the local rate that stays in place; without means, the duty factor: the fraction
         of the time for which each point is in contact (disk under a pad: its angle over 2 π).
     means : Means or None
     """
 
-    share: float = 0.0
+    share: float | np.ndarray = 0.0
     means: Means | None = None
 
     @property
@@ -72,10 +73,32 @@ class Distribution:
 class InPlace(Distribution):
     """Wear in place, with a duty factor of 1."""
 
-    share: float = 1.0
+    share: float | np.ndarray = 1.0
 
 
 IN_PLACE = InPlace()
+
+
+def joined_distributions(each: Sequence[Distribution], counts: Sequence[int]) -> Distribution:
+    """Distribution of the wear at the points of several interfaces, see `joined_laws`."""
+    if len(each) == 1 or all(isinstance(one, InPlace) for one in each):
+        return each[0]
+    share, coverage = (
+        np.concatenate([np.broadcast_to(v, n) for v, n in zip(values, counts, strict=True)])
+        for values in ([one.share for one in each], [one.coverage for one in each])
+    )
+    ends, known = np.cumsum(counts), [one.means for one in each]
+    ranges = [slice(end - n, end) for end, n in zip(ends, counts, strict=True)]
+    rows, reach, varies = [], [], False
+    for means, points in zip(known, ranges, strict=True):
+        if means is not None:
+            rows.append(np.zeros((len(means.rows), len(share))))
+            reach.append(np.zeros((len(share), len(means.rows))))
+            rows[-1][:, points], reach[-1][points] = means.rows, means.reach
+            varies |= means.varies
+    if not rows:
+        return Distribution(share)
+    return Distribution(share, Means(np.vstack(rows), np.hstack(reach), varies, coverage))
 
 
 def uniform_track(lengths: np.ndarray) -> Distribution:

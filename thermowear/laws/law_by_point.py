@@ -1,4 +1,4 @@
-"""Wear law of a face of several materials: one of several laws at each contact point."""
+"""Wear law of faces of several materials, or of several interfaces: one at each contact point."""
 
 from __future__ import annotations
 
@@ -69,3 +69,28 @@ def law_by_point(laws: Sequence[Law], at: np.ndarray) -> Law:
         np.array([law.pressure_exponent for law in powers])[at],
         np.array([law.velocity_exponent for law in powers])[at],
     )
+
+
+def joined_laws(laws: Sequence[Law | None], counts: Sequence[int]) -> Law:
+    """Law of the points of several interfaces; a power law if all of them are.
+
+    Parameters
+    ----------
+    laws : sequence of Law or None
+        Law of the points of each interface; None where nothing wears.
+    counts : sequence of int
+        Number of points of each interface.
+    """
+    known = [PowerWear(0.0) if law is None else law for law in laws]
+    if len(known) == 1:
+        return known[0]
+    powers = [law for law in known if type(law) is PowerWear]
+    if len(powers) < len(known):
+        return LawByPoint(tuple(known), np.repeat(np.arange(len(known)), counts))
+    columns = (
+        np.concatenate(
+            [np.broadcast_to(getattr(law, name), n) for law, n in zip(powers, counts, strict=True)]
+        )
+        for name in ("coefficient", "pressure_exponent", "velocity_exponent")
+    )
+    return PowerWear(*columns)

@@ -20,6 +20,7 @@ from ..laws.interfaces import Law
 from ..laws.plausible import typical_value
 from ..laws.time_course import TimeFunction
 from .body import WHY, Facing, Material
+from .conditions import Motion
 from .face_wear import Wear
 
 
@@ -74,6 +75,12 @@ class Interface:
     ----------
     faces : tuple of str
         Contact surfaces of body 1 and of body 2.
+    bodies : tuple of int
+        Indices of these bodies in the model.
+    name : str
+        Name for results and messages; empty for the only interface of a pair.
+    motion : Motion
+        Sliding of body 1 over body 2.
     friction : Law
         Coefficient of friction in the direction of sliding.
     friction_factors : Multipliers
@@ -105,6 +112,9 @@ class Interface:
     """
 
     faces: tuple[str, str]
+    bodies: tuple[int, int] = (0, 1)
+    name: str = ""
+    motion: Motion = field(default_factory=Motion)
     friction: Law = field(default_factory=lambda: Constant(0.0))
     friction_factors: Multipliers = field(default_factory=Multipliers)
     friction_history: TimeFunction | None = None
@@ -118,6 +128,11 @@ class Interface:
     initial_shape: str | None = None
     pressure_degree: int | Literal["lobatto"] | None = None
     method: ContactMethod = field(default_factory=ContactMethod)
+
+    @property
+    def table(self) -> str:
+        """Table of the case file that describes it, for messages."""
+        return f"contacts.{self.name}" if self.name else "contact"
 
     @cached_property
     def friction_law(self) -> Law:

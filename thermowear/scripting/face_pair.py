@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -11,6 +11,7 @@ import numpy as np
 from ..case.values import units
 from ..errors import CaseError
 from ..laws.time_course import TimeFunction
+from ..model.conditions import Motion
 from ..model.face_wear import CompositeWear, FaceWear, Wear
 from ..model.interface import ContactMethod, HardnessConductance, Interface
 from .body import BodySurface, MeshBody, require_surface
@@ -39,6 +40,8 @@ class FacePair:
         See `model.interface.Interface`.
     friction_history : TimeFunction or None
         Time-dependent factor of the friction.
+    name : str
+        Name in the results of a model of several interfaces, by default of both bodies.
     """
 
     one: BodySurface
@@ -53,6 +56,7 @@ class FacePair:
     friction_history: TimeFunction | None = None
     pressure_degree: int | Literal["lobatto"] | None = None
     method: ContactMethod = field(default_factory=ContactMethod)
+    name: str = ""
 
     def __post_init__(self):
         for face in self.faces:
@@ -63,16 +67,34 @@ class FacePair:
         """Contact faces."""
         return self.one, self.other
 
-    def in_model(self, bodies: tuple[MeshBody, ...], closes_by_wear: bool) -> Interface:
-        """Interface of a model, with the face of the held body first."""
+    def in_model(
+        self,
+        bodies: Sequence[MeshBody],
+        faces: tuple[BodySurface, BodySurface],
+        motion: Motion,
+        closes_by_wear: bool,
+    ) -> Interface:
+        """Interface of a model.
+
+        Parameters
+        ----------
+        bodies : sequence of MeshBody
+            Bodies of the model.
+        faces : tuple of BodySurface
+            The contact faces, that of the first body of the interface first.
+        motion : Motion
+            Sliding of the first body over the second one.
+        closes_by_wear : bool
+        """
         given = self.conductance
         if given is not None and not isinstance(given, HardnessConductance):
             given = coefficient_law(given, "Interface.conductance", "W/(m^2 K)", least=0.0)
-        first, second = sorted(self.faces, key=lambda face: bodies.index(face.body))
-        unknown = [body for body in self.wear if body not in bodies]
+        first, second = faces
+        own = first.body, second.body
+        unknown = [body for body in self.wear if body not in own]
         if unknown:
             raise CaseError(f"Interface.wear: {unknown[0]!r} is no body of this interface")
-        wear = {bodies.index(body): _body_wear(law, body) for body, law in self.wear.items()}
+        wear = {own.index(body): _body_wear(law, body) for body, law in self.wear.items()}
         kinds = {"gap_conductance": units.LeastHeatTransfer, "compliance": units.Compliance}
         kept = ("gap_conductance", "friction_history", "pressure_degree", "method")
         settings = {key: getattr(self, key) for key in kept}
@@ -80,6 +102,9 @@ class FacePair:
             settings["compliance"] = self.compliance
         return Interface(
             faces=(first.name, second.name),
+            bodies=(bodies.index(first.body), bodies.index(second.body)),
+            name=self.name or f"{first.body.name}-{second.body.name}",
+            motion=motion,
             friction=coefficient_law(self.friction, "Interface.friction", "", least=-np.inf),
             transverse_friction=number(self.transverse_friction, "Interface.transverse_friction"),
             conductance=given,
@@ -89,12 +114,12 @@ class FacePair:
             **quantities("Interface", kinds, settings),
         )
 
-    def _into_body_1(self, held: BodySurface) -> float | Literal["effusivity"]:
-        """Fraction of the friction heat released into the held body."""
+    def _into_body_1(self, first: BodySurface) -> float | Literal["effusivity"]:
+        """Fraction of the friction heat released into the first body."""
         if self.partition == "effusivity":
             return "effusivity"
         into_one = number(self.partition, "Interface.partition", 0.0, 1.0)
-        return into_one if held is self.one else 1.0 - into_one
+        return into_one if first is self.one else 1.0 - into_one
 
 
 def _body_wear(given: Any, body: MeshBody) -> Wear:

@@ -12,7 +12,7 @@ from dolfinx import fem
 
 from ..errors import CaseError
 from ..results import Result
-from ..simulation.results.recording import Snapshot, with_holder
+from ..simulation.results.recording import Snapshot
 from .body import MeshBody
 from .user_mesh import UserMeshes
 
@@ -135,10 +135,8 @@ class ContactResults(ABC):
 
         Every rank calls.
         """
-        now = self.snapshot
-        values = with_holder(now.system, now.bodies.displacement, now.motion)
-        spaces = now.system.elastic.spaces
-        return self.meshes.function(body, now.system, spaces, values, "displacement")
+        now, spaces = self.snapshot, self.snapshot.system.elastic.spaces
+        return self.meshes.function(body, now.system, spaces, now.displacement, "displacement")
 
     def to_dataframe(self):
         """Pandas frame of the interface, a row per contact point; columns in SI."""

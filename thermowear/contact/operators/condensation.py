@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 from petsc4py import PETSc
 
@@ -15,8 +16,7 @@ from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.mechanics.thermal_forces import ThermalForces
 from ...bulk.spaces import Spaces
 from ...parallel import sum_over_ranks
-from ..search.pairing import Pairing
-from .face_nodes import face_nodes
+from .face_nodes import nodes_by_body
 from .heat_exchange import FaceHeat, InterfaceHeat
 from .nodal_responses import NodalResponses
 from .pressure import Basis, PressureSpace, scaled
@@ -91,7 +91,7 @@ class Influence(PressureSpace):
 
 def influence(
     elastic: Elasticity,
-    pairing: Pairing,
+    weights: np.ndarray,
     trace: sp.csr_matrix,
     basis: Basis,
     thermal_loads: Sequence[ThermalForces] = (),
@@ -105,7 +105,8 @@ def influence(
     Parameters
     ----------
     elastic : Elasticity
-    pairing : Pairing
+    weights : ndarray, shape (n,)
+        Areas of the contact points [m²].
     trace : csr_matrix, shape (n_owned, n)
         Transposed gap trace Bᵀ.
     basis : ndarray or csr_array, shape (n, m)
@@ -116,7 +117,7 @@ def influence(
         Receives the weak gap per nodal rise of the first of them, which is not stored.
     """
     dim = elastic.bodies.dim
-    weighted = scaled(pairing.weights, basis)
+    weighted = scaled(weights, basis)
     loads = pressure_loads(trace, weighted)
     nodes = np.unique(np.flatnonzero(np.diff(trace.indptr)) // dim)
     touching = (nodes[:, None] * dim + np.arange(dim)).ravel()
@@ -142,7 +143,7 @@ def pressure_loads(trace: sp.csr_matrix, weighted: Basis) -> sp.csc_matrix:
 
 def condense(
     elastic: Elasticity,
-    pairing: Pairing,
+    weights: np.ndarray,
     trace: sp.csr_matrix,
     traction: sp.csr_matrix,
     basis: Basis,
@@ -152,7 +153,7 @@ def condense(
 
     Every rank calls.
     """
-    return influence(elastic, pairing, trace, basis).condensed(traction, holder)
+    return influence(elastic, weights, trace, basis).condensed(traction, holder)
 
 
 def condense_heat(conduction: Conduction, face: FaceHeat) -> InterfaceHeat:
@@ -160,16 +161,16 @@ def condense_heat(conduction: Conduction, face: FaceHeat) -> InterfaceHeat:
 
     The solutions follow when they are first needed, see `NodalResponses`. Every rank calls.
     """
-    first, second = (face_nodes(trace, conduction.spaces.comm) for trace in face.traces)
-    responses = NodalResponses(conduction, (first, second))
-    at_points = face.weights, face.basis, face.traces, face.shifts, face.partition
-    return InterfaceHeat(*at_points, (first, second), responses)
+    nodes = nodes_by_body(conduction.spaces, face.traces)
+    responses = NodalResponses(conduction, nodes)
+    at_points: dict[str, Any] = {f.name: getattr(face, f.name) for f in fields(FaceHeat)}
+    return InterfaceHeat(**at_points, nodes=nodes, responses=responses)
 
 
 def bath_matrix(
-    spaces: Spaces, traces, weights: np.ndarray, shifts: tuple[float, float]
+    spaces: Spaces, traces, weights: np.ndarray, shifts: tuple[np.ndarray, np.ndarray]
 ) -> PETSc.Mat:
-    """Matrix ``Σ E_iᵀ w s_i E_i`` of the bath at both faces, for `bulk.conduction`; collective."""
+    """Matrix ``Σ E_iᵀ w s_i E_i`` of the bath at the faces, for `bulk.conduction`; collective."""
     faces = zip(traces, shifts, strict=True)
     first, second = (transfer_matrix(spaces, trace, weights * shift) for trace, shift in faces)
     first.axpy(1.0, second, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)

@@ -108,7 +108,7 @@ class ChangedExchange(HeatExchange):
             functions[points],
             (face.values[0][points], face.values[1][points]),
             (direct, passing_fraction, resistance),
-            (0.0, 0.0),
+            (np.zeros(len(points)),) * 2,
         )
         rows, columns = self._difference.nonzero()
         self.near = np.union1d(rows, columns)

@@ -198,11 +198,11 @@ class ThermalDistortion:
 
     Attributes
     ----------
-    per_heat : tuple of ndarray, shape (m, n_f)
-        Weak gap per nodal heat into each body at its face, bath included [m³/W].
+    per_heat : tuple of ndarray, shape (m, n_b)
+        Weak gap per nodal heat into each body at its faces, bath included [m³/W].
     """
 
-    per_heat: tuple[np.ndarray, np.ndarray]
+    per_heat: tuple[np.ndarray, ...]
 
     def coupled(
         self, exchange: HeatExchange, reference: CoupledDistortion | None = None
@@ -222,24 +222,25 @@ class DistortionRows:
     Parameters
     ----------
     conduction : Conduction
-    faces : tuple of FaceNodes
+    nodes : tuple of FaceNodes
+        Nodes of each body.
     count : int
         Number m of pressure functions.
     """
 
-    def __init__(self, conduction: Conduction, faces: tuple[FaceNodes, FaceNodes], count: int):
-        self._conduction, self._faces, self._count = conduction.for_columns(), faces, count
-        self._bodies = [conduction.spaces.body_of(face.rows) for face in faces]
-        first, second = (np.zeros((count, face.count)) for face in faces)
-        self.distortion = ThermalDistortion((first, second))
+    def __init__(self, conduction: Conduction, nodes: tuple[FaceNodes, ...], count: int):
+        self._conduction, self._nodes, self._count = conduction.for_columns(), nodes, count
+        self._bodies = [conduction.spaces.body_of(own.rows) for own in nodes]
+        self.distortion = ThermalDistortion(tuple(np.zeros((count, n.count)) for n in nodes))
 
     def add(self, body: int, columns: slice, per_rise: np.ndarray) -> None:
         """Add the rows of a block from the weak gap per nodal rise of a body, (n_own, width)."""
         adjoint, spaces = self._conduction.in_body(body).adjoint_response(per_rise), self._spaces
-        faces = zip(self._bodies, self._faces, self.distortion.per_heat, strict=True)
-        for own, face, rows in faces:
+        for own, nodes, rows in zip(
+            self._bodies, self._nodes, self.distortion.per_heat, strict=True
+        ):
             if own == body:
-                at_face = adjoint[face.rows - spaces.starts[body]]
+                at_face = adjoint[nodes.rows - spaces.starts[body]]
                 rows[columns] += np.vstack(spaces.comm.allgather(at_face)).T
         if columns.stop == self._count:  # the body is done
             self._conduction.release()
@@ -252,11 +253,11 @@ class DistortionRows:
 def condense_distortion(
     conduction: Conduction,
     opening: ThermalOpening,
-    faces: tuple[FaceNodes, FaceNodes],
+    nodes: tuple[FaceNodes, ...],
     slopes: Sequence[np.ndarray] = (),
 ) -> ThermalDistortion:
     """Condense the thermal distortion; slopes as in `ThermalOpening`. Every rank calls."""
-    rows = DistortionRows(conduction, faces, opening.loads.shape[1])
+    rows = DistortionRows(conduction, nodes, opening.loads.shape[1])
     for body, columns, per_rise in opening.by_columns(conduction.spaces, slopes):
         rows.add(body, columns, per_rise)
     return rows.distortion

@@ -16,6 +16,7 @@ from dolfinx import fem
 from ...bulk.field import basis_element
 from ...bulk.spaces import Spaces
 from ...lagrange import tabulated
+from ..search.contacts import Contacts
 from ..search.pairing import PairedFace, Pairing
 
 
@@ -29,25 +30,39 @@ def value_trace(spaces: Spaces, side: PairedFace) -> sp.csr_matrix:
     return gather_rows(spaces, index, nodes, point, values, len(side.t))
 
 
-def gap_trace(spaces: Spaces, pairing: Pairing) -> sp.csr_matrix:
+def face_traces(spaces: Spaces, contacts: Contacts) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+    """Traces Eᵀ of the first and of the second faces of all contacts, see `value_trace`."""
+    first, second = (
+        sp.hstack([value_trace(spaces, pairing.sides[side]) for pairing in contacts.each]).tocsr()
+        for side in (0, 1)
+    )
+    return first, second
+
+
+def gap_trace(spaces: Spaces, contacts: Contacts) -> sp.csr_matrix:
     """Transposed gap trace Bᵀ of vector spaces: shape (n_owned, n_points). Every rank calls.
 
     ``B u = (u2 - u1)·n``, see `pairing` for the sign.
     """
-    return vector_trace(spaces, pairing, pairing.normals)
+    return vector_trace(spaces, contacts, contacts.normals)
 
 
-def vector_trace(spaces: Spaces, pairing: Pairing, directions: np.ndarray) -> sp.csr_matrix:
+def vector_trace(spaces: Spaces, contacts: Contacts, directions: np.ndarray) -> sp.csr_matrix:
     """Transposed trace of ``(u2 - u1)·e``: shape (n_owned, n_points). Every rank calls.
 
     Parameters
     ----------
     spaces : Spaces
         Vector spaces.
-    pairing : Pairing
+    contacts : Contacts
     directions : ndarray, shape (n_points, gdim)
         Direction e at each point; not necessarily a unit vector (traction of sliding contact).
     """
+    each = [_vector_trace(spaces, pairing, directions[points]) for pairing, points in contacts]
+    return each[0] if len(each) == 1 else sp.hstack(each).tocsr()
+
+
+def _vector_trace(spaces: Spaces, pairing: Pairing, directions: np.ndarray) -> sp.csr_matrix:
     count, width = len(pairing.weights), spaces.components
     result = sp.csr_matrix((spaces.owned, count))
     for sign, side in zip((-1.0, 1.0), pairing.sides, strict=True):

@@ -68,7 +68,7 @@ class EnrichedBodies:
             elastic.solve,
             (elastic.fixed, np.concatenate(held)),
         )
-        self._trace = sp.vstack([system.trace, gap_trace(surplus, system.pairing)])
+        self._trace = sp.vstack([system.trace, gap_trace(surplus, system.contacts)])
 
     def opening(self, contact: ContactState, state: BodyState, heated: TemperatureChange | None):
         """Change of the gap at the points by the next degree in a state, shape (n,) [m]."""
@@ -97,7 +97,7 @@ class EnrichedBodies:
         traction = contact.traction(system.with_friction(contact.conditions.friction))
         loads = np.concatenate(
             [
-                vector_trace(space, system.pairing, traction) @ system.weights
+                vector_trace(space, system.contacts, traction) @ system.weights
                 for space in (problem.spaces, problem.surplus)
             ]
         )
@@ -143,9 +143,10 @@ def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -
 
     Approximation: each point has a resistance of its own in either body, its rise per own flux.
     """
-    pairs = zip(face.values, face.response, strict=True)
-    diagonals = [values.multiply(values @ response).sum(axis=1) for values, response in pairs]
-    own = np.abs(face.weights * np.array(diagonals))
+    own = np.zeros_like(rises)
+    for nodes, response in zip(face.nodes, face.response, strict=True):
+        own += [values.multiply(values @ response).sum(axis=1) for values in nodes.values]
+    own = np.abs(face.weights * own)
     with np.errstate(divide="ignore"):
         flux = (rises[1] - rises[0]) / (own.sum(axis=0) + 1 / conductance)
     return rises + own * flux * np.array([[1.0], [-1.0]])
@@ -164,7 +165,8 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
         ]
         for body in bodies.each
     ]
-    shifts = dict(zip(model.interface.faces, thermal.face.shifts, strict=True))
+    at_faces = zip(model.interface.faces, thermal.face.shifts, strict=True)
+    shifts = {name: float(shift[0]) for name, shift in at_faces}
     bath = [transferring(body, kinematics, shifts) for body in bodies.each]
     given, _ = given_rises(bodies, surplus, dict.fromkeys(heat.temperature, 0.0), None)
     return EnrichedProblem(

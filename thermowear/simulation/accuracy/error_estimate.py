@@ -23,6 +23,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...contact.operators.coupled_heat import CoupledHeat
+from ...contact.search.contacts import Contacts
 from ...contact.search.face import Surface
 from ...contact.search.pairing import pair
 from ...contact.solvers.enriched_pressure import enriched_pressure
@@ -196,7 +197,7 @@ def _enriched_pressure(end: Snapshot, bodies: EnrichedBodies, opened: np.ndarray
     return enriched_pressure(
         system.pairing,
         system.influence,
-        system.model.pressure_degree,
+        system.model.pressure_degree(system.model.interface),
         system.holder,
         interface.pressure,
         interface.gap + opened,
@@ -258,4 +259,6 @@ def _finer(system: System) -> System:
     order = model.discretisation.degree + (2 if lobatto else 3)
     pairing = pair(face_1, face_2, kinematics, order, refine=not lobatto)
     driven = system.holder.rigid_modes
-    return replace(system, pairing=pairing, **sliding_contact(model, kinematics, pairing, driven))
+    contacts = Contacts((pairing,))
+    contact = sliding_contact(model, kinematics, contacts, driven)
+    return replace(system, contacts=contacts, **contact)

@@ -5,7 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ...errors import ComputationError
-from ...model.analyses import Analysis, FrettingAnalysis, ReciprocatingAnalysis
+from ...model.analyses import (
+    Analysis,
+    FrettingAnalysis,
+    ReciprocatingAnalysis,
+    TransientAnalysis,
+)
 from ...results import InterfaceFields
 from ..geometry_update.outer_loop import GapWear
 from ..results.recording import Snapshot
@@ -28,12 +33,14 @@ def moved_against_load(
     Without heat and loads on surfaces, ``F·d = ∫ p g dA + ∫ p A p dA``: the loads do positive work
     on the holder unless the drawn faces overlap.
     """
+    if not system.model.is_pair:
+        return None
     holder, pairing = system.model.holder, system.pairing
     if analysis.type not in _ANALYSES or system.thermal is not None or holder.surface_forces:
         return None
     if holder.force is None or system.worn is not None:
         return None
-    back = -applied(holder, end.motion) / holder.force
+    back = -applied(holder, end.motions[0]) / holder.force
     if back <= _BACK * pairing.extent:
         return None
     pressing = end.contact.pressure > 0
@@ -47,8 +54,11 @@ def moved_against_load(
 
 def inclined_faces(system: System, pressure: np.ndarray) -> str | None:
     """Note on contact of faces far from parallel; None if there is none."""
-    first, second = (side.face.normals(side.facet, side.t) for side in system.pairing.sides)
-    cosine = np.einsum("ni,ni->n", first, second)[pressure > 0].max(initial=-1.0)
+    cosine = -1.0
+    for pairing, points in system.contacts:
+        first, second = (side.face.normals(side.facet, side.t) for side in pairing.sides)
+        opposed = np.einsum("ni,ni->n", first, second)[pressure[points] > 0]
+        cosine = max(cosine, float(opposed.max(initial=-1.0)))
     if cosine <= _STEEP:
         return None
     angle = 180 - np.degrees(np.arccos(cosine))
@@ -70,12 +80,16 @@ def open_contact(system: System, interface: InterfaceFields) -> ComputationError
     ComputationError, str or None
         Error, note, or None with contact.
     """
-    if interface.pressure.max() > 0.0:
+    each = zip(system.model.interfaces, system.contacts.ranges, strict=True)
+    apart_at = [one.name for one, own in each if not interface.pressure[own].max() > 0.0]
+    if not apart_at:
         return None
+    if len(apart_at) < len(system.model.interfaces):
+        return f"nothing touches at the end in the contacts: {', '.join(apart_at)}"
     gap = np.nanmin(interface.gap, initial=np.inf)
     apart = f"; the faces are {1e6 * gap:.4g} µm apart at least" if np.isfinite(gap) else ""
-    holder = system.model.holder
-    force = holder.force if holder.history is None else None
+    given = [h.force for h in system.model.holders if h.history is None and h.force is not None]
+    force = max(given, default=None)
     if force is None:
         return f"nothing touches at the end{apart}"
     return ComputationError(f"nothing carries the pressing force of {force:.4g} N{apart}")
@@ -84,21 +98,24 @@ def open_contact(system: System, interface: InterfaceFields) -> ComputationError
 def deep_wear(system: System, analysis: Analysis, interface: InterfaceFields) -> str | None:
     """Note on an analysis without mesh motion that leaves the small-wear regime; every rank calls.
 
-    In reciprocating sliding the depths are those at mid-stroke of body 1.
+    Meshes are not moved in fretting and reciprocating analyses and in models of several bodies. In
+    reciprocating sliding the depths are those at mid-stroke of body 1.
 
     Returns
     -------
     str or None
         None if the wear is small, or declared small by ``wear.update = "never"``.
     """
-    if not isinstance(analysis, FrettingAnalysis | ReciprocatingAnalysis):
+    if not isinstance(analysis, FrettingAnalysis | ReciprocatingAnalysis) and (
+        system.model.is_pair or not isinstance(analysis, TransientAnalysis)
+    ):
         return None
     allowed = analysis.largest_kept
     fraction = GapWear(system).fraction(np.array([interface.wear_1, interface.wear_2]))
     if fraction <= allowed:
         return None
     return (
-        f"the wear, which a {analysis.type} analysis keeps in the gap, comes to {fraction:.2%} of "
-        "the thickness behind the face or of its radius of curvature, or tilts elements by ten "
+        f"the wear, which this {analysis.type} analysis keeps in the gap, comes to {fraction:.2%} "
+        "of the thickness behind the face or of its radius of curvature, or tilts elements by ten "
         f"times that: pressures and shapes are those of small wear, up to {allowed:.2%}"
     )

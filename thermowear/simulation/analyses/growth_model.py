@@ -81,7 +81,7 @@ class GrowthModel:
         self._fields = np.zeros((len(system.thermal.conduction.fixed), 0))
         self._crossing = np.zeros((len(system.weights), 0))
         self._rates: list[float] = []
-        slowest = self._thermal.diffusivity / self._system.pairing.extent**2
+        slowest = self._thermal.diffusivity / min(p.extent for p in self._system.contacts.each) ** 2
         for rate in (0.0, *(part * slowest for part in _SPREAD)):
             self.add(rate)
 

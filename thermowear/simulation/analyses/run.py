@@ -40,8 +40,7 @@ from .transient import TransientHistory
 
 _UNPAIRED = 1e-6
 _CYCLIC = "fretting", "reciprocating"
-_NOT_ESTIMATED = "the discretisation error is not estimated where bodies are solved by multigrid"
-_SKIPPED = {"all": "not estimated where bodies are solved by multigrid"}
+_OF_SEVERAL = "initial", "steady", "transient"
 
 
 def run(
@@ -118,6 +117,11 @@ def analyse(
     Starts anew, or from the checkpoint of an analysis of the same system.
     """
     choice = system.choice
+    if analysis.type not in _OF_SEVERAL and not system.model.is_pair:
+        raise CaseError(
+            f"a {analysis.type} analysis is for two bodies with one interface; for several bodies "
+            f"there are: {', '.join(_OF_SEVERAL)}"
+        )
     if analysis.type in _CYCLIC and jumps(system.pairing):
         raise CaseError(
             f"a {analysis.type} analysis does not support contact faces of several materials that "
@@ -126,12 +130,13 @@ def analyse(
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:
             observer.note(note)
-    if system.pairing.unpaired > _UNPAIRED:
-        percent = 100 * system.pairing.unpaired
-        observer.note(
-            f"{percent:.2g} % of the contact face of body 1 has nothing opposite and "
-            "stays out of the contact"
-        )
+    for pairing in system.contacts.each:
+        if pairing.unpaired > _UNPAIRED:
+            face = f"of {pairing.sides[0].face.name}" if len(system.contacts.each) > 1 else ""
+            observer.note(
+                f"{100 * pairing.unpaired:.2g} % of the contact face {face or 'of body 1'} has "
+                "nothing opposite and stays out of the contact"
+            )
     if isinstance(analysis, StaticAnalysis):
         end, result = _STATIC[analysis.type](system, observer)
     else:
@@ -174,7 +179,7 @@ def _factorised_conduction(system: System) -> str | None:
 
 def _streamed(system: System, analysis: Analysis) -> str | None:
     """Note on the response of the gap to temperatures, where it is needed and not stored."""
-    needed = system.model.interface.method.name == "condensed" and not (
+    needed = system.model.method == "condensed" and not (
         system.choice.single and needs_single_solution(system.model, analysis)
     )
     return system.opening_storage.note() if needed else None
@@ -198,9 +203,12 @@ def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Obse
     """Add discretisation error estimates to the summary; note large ones. Every rank calls."""
     if result.stopped is not None:
         return result
-    if end.system.choice.iterative:
-        observer.note(_NOT_ESTIMATED)
-        return replace(result, summary=result.summary | {"error_estimate_missing": _SKIPPED})
+    several = not end.system.model.is_pair
+    if several or end.system.choice.iterative:
+        why = "in models of several bodies" if several else "where bodies are solved by multigrid"
+        observer.note(f"the discretisation error is not estimated {why}")
+        missing = {"error_estimate_missing": {"all": f"not estimated {why}"}}
+        return replace(result, summary=result.summary | missing)
     try:
         estimates = estimate_errors(analysis, end)
     except (CaseError, ComputationError, LinAlgError) as error:  # the result is valid without it

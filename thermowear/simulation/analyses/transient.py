@@ -205,10 +205,8 @@ class TransientHistory(AnalysisHistory[Moment]):
     def _force_per_pressure(self, conditions: InterfaceConditions) -> np.ndarray:
         """Normal force per pressure at the points (n,) [m²]; those of the last conditions kept."""
         if self._pressing is None or self._pressing[0] is not conditions:
-            system = self.loop.now.system
-            directions = system.with_friction(conditions.friction).traction_direction
-            along = directions @ system.load_direction
-            self._pressing = conditions, system.weights * along
+            system = self.loop.now.system.with_friction(conditions.friction)
+            self._pressing = conditions, system.force_per_pressure
         return self._pressing[1]
 
     def _mean(self, values: np.ndarray) -> float:

@@ -44,7 +44,6 @@ def model_of(case: Case) -> Model:
         holders=(_holder(case),),
         meshes=CaseMeshes(case.model, geometry, case.mesh, case),
         discretisation=Discretisation(case.mesh.degree, case.contact.positioning, case.mesh.solver),
-        motion=_motion(case),
         heat=None if case.heat is None else Heat(**attributes(Heat, case.heat)),
         thickness=geometry.thickness_factor,
         sector=geometry.sector,
@@ -176,6 +175,7 @@ def _interface(case: Case) -> Interface:
     history = contact.friction_history
     return Interface(
         faces=case.geometry.contact,
+        motion=_motion(case),
         friction=contact.friction_law,
         friction_factors=contact.friction_factor.multipliers,
         friction_history=None if history is None else history.function,

@@ -202,7 +202,7 @@ def smoothed_wear(problem: InterfaceProblem, state: InterfaceState, time: float)
     weak = state.pressure > 0
     if state.pointwise is not None:
         weak &= ~state.pointwise  # there faces conform already, and the gap is resolved
-    excess = unresolved_gap(gap, weak, system.pairing, system.basis)
+    excess = unresolved_gap(gap, weak, system.contacts, system.basis)
     in_place = np.array([isinstance(s, InPlace) for s in system.spreads.values()])
     ours = np.where(in_place[:, None], state.worn, 0.0)
     whole = ours.sum(axis=0)

@@ -25,7 +25,8 @@ from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from ..system.thermal_system import ThermalLoad, ThermalSystem
+from ..system.thermal_loads import ThermalLoad
+from ..system.thermal_system import ThermalSystem
 from .exchange_cache import ExchangeCache, KnownExchange, thermal_distortion
 
 _ROUNDING = 1e-3
@@ -107,7 +108,7 @@ class HeatOperators:
 
     def __init__(self, system: System, conduction: Conduction, face: AnyFace):
         self.conduction, self.face, self._system = conduction, face, system
-        method, condensed = system.model.interface.method.name, isinstance(face, InterfaceHeat)
+        method, condensed = system.model.method, isinstance(face, InterfaceHeat)
         self.distorts = method == "condensed" and condensed
         self._last: tuple[bytes, KnownExchange] | None = None
 

@@ -64,9 +64,8 @@ class CondensedMethod:
     def __init__(self, system: System):
         self._system = system
         self._contact = system.contact
-        nominal = np.full(len(system.weights), system.friction)
-        self._last_friction = (nominal.tobytes(), self._contact)
-        self._dead = system.gap - system.pairing.gap
+        self._last_friction = (system.friction.tobytes(), self._contact)
+        self._dead = system.gap - system.contacts.gap
         self._free = system.holder.free
         self._given = system.holder.amplitudes(np.zeros(int(self._free.sum())))
         self._last_space: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None

@@ -34,7 +34,7 @@ class GrowingEdge:
     """Edge of the wear in a contact that may grow by wear."""
 
     def __init__(self, system: System, method: ContactSolver):
-        self._facet, self._basis = system.pairing.sides[0].facet, system.basis
+        self._facet, self._basis = system.contacts.facet, system.basis
         self._weights = system.weights
         self._method = method
 

@@ -42,12 +42,11 @@ class InterfaceProblem(WearProblem):
         self._condition_model = ConditionModel(system)
         self._last_conditions: tuple[bytes, InterfaceConditions] | None = None
         self._laws, self._spreads = list(system.laws.values()), list(system.spreads.values())
-        self._edge, area = GrowingEdge(system, method), float(system.weights.sum())
-        self._gap, n = system.pairing.gap - system.holder.imposed, len(system.weights)
-        self._softness, self._rigid = np.full(n, system.softness), Slope.diagonal(np.zeros(n))
+        self._edge = GrowingEdge(system, method)
+        self._gap, n = system.contacts.gap - system.holder.imposed, len(system.weights)
+        self._softness, self._rigid = system.softness, Slope.diagonal(np.zeros(n))
         self._unworn = np.zeros((len(self._laws), n))
-        mean = (system.model.holder.force or area) / area
-        self._guess = ContactSolution(np.full(n, mean), np.zeros(0), None)
+        self._guess = ContactSolution(np.full(n, system.mean_pressure), np.zeros(0), None)
         self.stores_heat = system.model.heat is not None and system.model.heat.transient
 
     def unworn(self) -> InterfaceState:
@@ -292,7 +291,7 @@ def interface_problem(
         Called with a warning about settings that may impair the solution.
     """
     own = {"condensed": CondensedMethod, "pointwise": PointwiseMethod}
-    method = own.get(system.model.interface.method.name)
+    method = own.get(system.model.method)
     if method is not None:
         return InterfaceProblem(system, method(system), friction_heat(system))
     with system.phases("contact operators"):

@@ -44,8 +44,7 @@ def steady_state(system: System) -> SteadyState:
         If there is no steady state, or the fixed-point iteration does not converge.
     """
     heat = friction_heat(system)
-    area = float(system.weights.sum())
-    uniform = np.full(len(system.weights), (system.model.holder.force or area) / area)
+    uniform = np.full(len(system.weights), system.mean_pressure)
     zeros = np.zeros((len(system.laws), len(uniform)))
     start = Trial(uniform, None if heat is None else heat.steps.steady.baseline.unheated, zeros)
 

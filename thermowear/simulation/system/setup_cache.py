@@ -68,14 +68,23 @@ class CacheKeys:
 
 def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
     """Cache keys of a model meshed for a zone (by default the expected contact zone)."""
-    interface, materials, heat = model.interface, model.materials, model.heat
+    interfaces, materials, heat = model.interfaces, model.materials, model.heat
     zone = model.expected_zone if zone is None else zone
     section = model.kinematics, model.thickness, model.sector
     supports = model.symmetry, *((b.fixed, b.rollers, b.mid_plane) for b in model.bodies)
-    spaces = model.discretisation.degree, interface.pressure_degree
+    spaces = model.discretisation.degree, [one.pressure_degree for one in interfaces]
     mesh = (section, supports, model.meshes, spaces, zone)
-    shares = softness_of_parts(model), bool(interface.wearing_in_place)
-    points = (mesh, interface.initial_shape, shares, groups_of_parts(model))
+    faces = [
+        (
+            one.faces,
+            one.initial_shape,
+            softness_of_parts(model, one),
+            bool(one.wearing_in_place),
+            groups_of_parts(model, one),
+        )
+        for one in interfaces
+    ]
+    points = (mesh, faces)
     strained = {part: (m.young_modulus, m.poisson_ratio) for part, m in materials.items()}
     if heat is None:
         return CacheKeys(mesh, points, (points, strained), ())
@@ -85,5 +94,6 @@ def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
         part: (m.conductivity, m.conductivity_factor, m.density, m.specific_heat)
         for part, m in materials.items()
     }
-    carried = model.motion if heat.advection == "resolved" else None
+    motions = [interface.motion for interface in interfaces]
+    carried = motions if heat.advection == "resolved" else None
     return CacheKeys(mesh, points, elasticity, (elasticity, conducting, heat, carried))

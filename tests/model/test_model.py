@@ -120,9 +120,9 @@ def test_fretting_needs_a_history(ring):
     """requirement: no analysis fails by an assertion where a model lacks what it needs."""
     from thermowear.model import FrettingAnalysis
 
+    still = replace(ring, heat=None, interfaces=(replace(ring.interface, motion=Motion()),))
     with pytest.raises(tw.CaseError, match=r"^load\.history: missing"):
-        still = replace(ring.interface, motion=Motion())
-        run(replace(ring, heat=None, interfaces=(still,)), FrettingAnalysis())
+        run(still, FrettingAnalysis())
 
 
 def test_equal_cases_make_equal_models():

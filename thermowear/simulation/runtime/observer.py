@@ -83,9 +83,9 @@ class Saved:
     @classmethod
     def now(cls, system: System, progress: Progress) -> Saved:
         """Checkpoint of an analysis that started with a system."""
-        pairing, nodes = system.pairing, system.elastic.nodes()
+        contacts, nodes = system.contacts, system.elastic.nodes()
         mesh = mesh_checksum(system)
-        return cls(pairing.points, pairing.gap, len(nodes), nodes.sum(axis=0), progress, mesh)
+        return cls(contacts.points, contacts.gap, len(nodes), nodes.sum(axis=0), progress, mesh)
 
     def of(self, system: System) -> Progress:
         """Progress of the checkpoint, checked to belong to a system.
@@ -106,7 +106,8 @@ class Saved:
 
     def _began_with(self, system: System) -> bool:
         """Compare up to rounding: in parallel a positioned mesh is not bitwise reproducible."""
-        other, near = Saved.now(system, self.progress), _ROUNDING * system.pairing.extent
+        other = Saved.now(system, self.progress)
+        near = _ROUNDING * max(pairing.extent for pairing in system.contacts.each)
         if (self.nodes, self.gap.shape) != (other.nodes, other.gap.shape):
             return False
         pairs = (self.points, other.points), (self.gap, other.gap)

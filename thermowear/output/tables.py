@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..results.quantity import TABLES, Quantity, Table, table_of, unknown
-from .files import atomic_write, model_of, stem_and_time
+from .files import atomic_write, model_of, table_file
 
 _NUMBER = "{:.15g}"
 
@@ -32,7 +32,7 @@ class TableColumns(dict[str, np.ndarray]):
 
     def __init__(self, path: Path, columns: dict[str, np.ndarray]):
         self._path = path
-        table = TABLES.get(stem_and_time(path.name)[0])
+        table = TABLES.get(table_file(path.name).stem)
         self._known = {} if table is None else table.columns
         names = {quantity.header: name for name, quantity in self._known.items()}
         super().__init__((names.get(header, header), column) for header, column in columns.items())

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import TypeVar
+
 import numpy as np
 
-from .quantity import as_in, column, table
+from .quantity import as_in, column, table, table_of
 
 
 @table(
@@ -125,3 +128,12 @@ class Modes:
     s: np.ndarray = as_in(InterfaceFields)
     pressure: np.ndarray = column("pressure perturbation", meaning="largest value 1")
     pressure_imaginary: np.ndarray = column("perturbation, imaginary part")
+
+
+Points = TypeVar("Points")
+
+
+def part_of(points: Points, chosen: slice) -> Points:
+    """Range of the points of a table."""
+    columns = {name: getattr(points, name)[chosen] for name in table_of(points).columns}
+    return replace(points, **columns)  # type: ignore[type-var]

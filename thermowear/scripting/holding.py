@@ -154,15 +154,10 @@ class Translation:
     across: bool = False
     history: TimeFunction | None = None
 
-    def relative(self, holds: bool, axisymmetric: bool) -> Motion:
-        """Sliding of body 1 over body 2; `holds` is true for a motion of body 1."""
+    def in_model(self) -> Motion:
+        """Motion of the body in the frame of the model."""
         velocity = in_python(units.Velocity, self.velocity, "Translation.velocity")
-        return Motion(
-            velocity=velocity if holds else -velocity,
-            across=self.across,
-            passes=not holds and not self.across and not axisymmetric,
-            history=self.history,
-        )
+        return Motion(velocity=velocity, across=self.across, history=self.history)
 
 
 @dataclass(frozen=True)
@@ -183,50 +178,8 @@ class Rotation:
     center: tuple[Any, Any] = (0.0, 0.0)
     history: TimeFunction | None = None
 
-    def relative(self, holds: bool, axisymmetric: bool) -> Motion:
-        """Sliding of body 1 over body 2; `holds` is true for a motion of body 1."""
+    def in_model(self) -> Motion:
+        """Motion of the body in the frame of the model."""
         ω = in_python(units.AngularVelocity, self.angular_velocity, "Rotation.angular_velocity")
-        if axisymmetric:
-            return Motion(angular_velocity=ω if holds else -ω, history=self.history)
-        if holds:
-            raise CaseError(
-                "Model.motions: the first body of an interface cannot rotate about a centre; give "
-                "the motion of the other one"
-            )
         x, y = each_quantity(units.Coordinate, self.center, "Rotation.center")
-        return Motion(angular_velocity=ω, center=(x, y), passes=True, history=self.history)
-
-
-def relative_motion(
-    first: Translation | Rotation | None,
-    second: Translation | Rotation | None,
-    axisymmetric: bool,
-) -> Motion:
-    """Sliding of the first body of an interface over the second one, from the motions of both.
-
-    Raises
-    ------
-    CaseError
-        If both move, other than along or about the same axis.
-    """
-    if first is None or second is None:
-        given = first or second
-        return Motion() if given is None else given.relative(first is not None, axisymmetric)
-    one, other = first.relative(True, axisymmetric), second.relative(False, axisymmetric)
-    same = one.across == other.across and one.center is None and other.center is None
-    if type(first) is not type(second) or not same or one.history != other.history:
-        raise CaseError(
-            "Model.motions: two bodies that slide on each other must both translate, or both "
-            "rotate about the axis of the model, with one history"
-        )
-    return Motion(
-        velocity=_sum(one.velocity, other.velocity),
-        angular_velocity=_sum(one.angular_velocity, other.angular_velocity),
-        across=one.across,
-        passes=other.passes,
-        history=one.history,
-    )
-
-
-def _sum(one: float | None, other: float | None) -> float | None:
-    return None if one is None or other is None else one + other
+        return Motion(angular_velocity=ω, center=(x, y), history=self.history)

@@ -21,6 +21,7 @@ from ..model.analyses import (
 from ..model.conditions import Heat, Holder
 from ..model.interface import Interface
 from ..model.model import Discretisation, Model, Solver
+from ..model.relative_motion import relative_motion
 from ..simulation.analyses.run import needs_single_solution, solve
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.building import build
@@ -30,7 +31,7 @@ from ..timer import Phases
 from .body import BodySurface, MeshBody
 from .conversion import number
 from .face_pair import FacePair
-from .holding import Rotation, SurfaceHolder, Translation, relative_motion
+from .holding import Rotation, SurfaceHolder, Translation
 from .march import MarchState, march
 from .solution import ModelSolution
 from .user_mesh import UserMeshes, user_meshes
@@ -238,8 +239,11 @@ class ScriptedModel:
         first, second = sorted(
             pair.faces, key=lambda face: order.index(face.body) if face.body in order else 0
         )
-        motions = self.motions.get(first.body), self.motions.get(second.body)
-        motion = relative_motion(*motions, self.kinematics == "axisymmetric")
+        one, other = (
+            None if given is None else given.in_model()
+            for given in (self.motions.get(face.body) for face in (first, second))
+        )
+        motion = relative_motion(one, other, self.kinematics == "axisymmetric")
         found = pair.in_model(self.bodies, (first, second), motion, closes_by_wear)
         return replace(found, name="") if self._is_pair else found
 

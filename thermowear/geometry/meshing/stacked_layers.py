@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ..mesh.tagged import TaggedMesh
-from .cells import Claim, Sheet, between, both, grid, level, mesh_body, tagged_bodies
+from .cells import Claim, MeshedBody, Sheet, between, both, grid, level, mesh_body, tagged_bodies
 from .divisions import SAME, graded_face, growing, growing_from_both, joined
 
 _LARGEST = 3.0
@@ -50,7 +50,8 @@ def stacked_layers(
     face : callable
         Number of elements along the widest layer, and grading, of a body.
     """
-    bodies, surfaces = {}, {}
+    bodies: dict[str, MeshedBody] = {}
+    surfaces: dict[str, Claim] = {}
     widest = max(layer.width for layer in layers.values())
     for name, layer, span, (over, under) in _placed(layers):
         elements, grading = face(name)

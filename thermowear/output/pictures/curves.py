@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import tables
-from ..files import read_summary, states
+from ..files import name_at, picture, read_summary, states
 from .panels import (
     BODIES,
     abscissa,
@@ -50,11 +50,11 @@ def final_time(folder: Path) -> float | None:
     return None
 
 
-def draw_interface(folder: Path) -> None:
+def draw_interface(folder: Path, contact: str = "") -> None:
     """Draw ``interface.png``: pressure, temperatures and shape along the contact."""
-    data = tables.read(folder / "interface.csv")
+    data = tables.read(folder / name_at("interface", None, contact))
     shown = interface_panels(data)
-    with column(folder / "interface.png", len(shown), 2.3) as axes:
+    with column(folder / picture("interface", contact), len(shown), 2.3) as axes:
         for axis, names in zip(axes, shown, strict=True):
             for name, color, line in zip(names, BODIES, ("-", "--"), strict=False):
                 plot_along(axis, data, name, line, color=color, label=f"body {name[-1]}")
@@ -64,19 +64,20 @@ def draw_interface(folder: Path) -> None:
         from_zero(axes[0])
 
 
-def draw_wear(folder: Path) -> None:
+def draw_wear(folder: Path, contact: str = "") -> None:
     """Draw ``wear.png``: pressure and wear depth along the contact at the output times."""
     end = final_time(folder)
     if end is None:
         return
-    files = {end: folder / "interface.csv"} | states(folder, "interface")
+    last = {end: folder / name_at("interface", None, contact)}
+    files = last | states(folder, "interface", contact)
     found = {time: tables.read(files[time]) for time in sorted(files)}
     final = found[max(found)]
     bodies = worn_bodies(final)
     if not bodies:
         return
     shown = ["pressure", *bodies] if len(found) > 1 else bodies
-    with column(folder / "wear.png", len(shown), 3.0) as axes:
+    with column(folder / picture("wear", contact), len(shown), 3.0) as axes:
         for axis, name in zip(axes, shown, strict=True):
             for (time, data), color in zip(found.items(), time_colors(len(found)), strict=True):
                 plot_along(axis, data, name, color=color, label=f"{time:.4g} s")
@@ -86,13 +87,13 @@ def draw_wear(folder: Path) -> None:
         time_legend(axes[0])
 
 
-def draw_profile(folder: Path) -> None:
+def draw_profile(folder: Path, contact: str = "") -> None:
     """Draw ``profile.png``: worn shape and wear rates of a face that is not level."""
-    data = tables.read(folder / "profile.csv")
+    data = tables.read(folder / name_at("profile", None, contact))
     shown = [(name, label) for name, label in _DIRECTIONS if _depends_on_direction(data, name)]
     if not shown or not np.any(data["wear_rate"] > 0):
         return
-    with column(folder / "profile.png", len(shown), 2.6) as axes:
+    with column(folder / picture("profile", contact), len(shown), 2.6) as axes:
         for axis, (name, label) in zip(axes, shown, strict=True):
             plot_along(axis, data, name, "-", label="along the normal")
             plot_along(axis, data, f"{name}_along_press", "--", label="along the load direction")

@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 
 from ...case.tables.analyses import Fretting
+from ...case.tables.contact import InterfaceTable
 from ...case.tables.geometry import Geometry, Pressing
 from ...case.tables.laws import PressureConductanceTable, TabulatedConductanceTable, law_of
+from ...case.tables.materials import Properties
 from ...case.tables.schema import Case, MeshTable
 from ...case.tables.tabulated import (
     ExpansionTable,
@@ -34,8 +36,8 @@ from ...model.model import Discretisation, Model, Zone
 from ...model.tracks import CircularTrack, EvenTrack, PinTrack, TabulatedTrack, Track
 
 
-def model_of(case: Case) -> Model:
-    """Model of a validated case."""
+def pair_of(case: Case) -> Model:
+    """Model of a validated case of two bodies."""
     geometry = case.geometry
     return Model(
         kinematics=case.model,
@@ -105,7 +107,11 @@ def _bodies(case: Case) -> tuple[Body, Body]:
 
 def _material(case: Case, part: str) -> Material:
     """Material of a part, with ``like`` resolved; a zone may share the material of its body."""
-    path, given = case.located_material(part)
+    return material(*case.located_material(part))
+
+
+def material(path: str, given: Properties) -> Material:
+    """Material from the table at a path."""
     if given.young_modulus is None or given.poisson_ratio is None:
         raise CaseError(f"{path}: needs young_modulus and poisson_ratio")
     return Material(**attributes(Material, given), label=path)
@@ -199,12 +205,16 @@ def _interface(case: Case) -> Interface:
 
 def _conductance(case: Case) -> Law | HardnessConductance | None:
     """Contact conductance of a case; None: perfect contact, or no heat."""
-    given = None if case.heat is None else case.heat.conductance
+    return None if case.heat is None else conductance(case.heat.conductance, "heat.conductance")
+
+
+def conductance(given: Any, path: str) -> Law | HardnessConductance | None:
+    """Contact conductance from the value of the key at a path; None: perfect contact."""
     if isinstance(given, TabulatedConductanceTable):
         return Multipliers({"p": given.table})
     if isinstance(given, PressureConductanceTable):
         return HardnessConductance(given.coefficient)
-    return None if given is None else law_of(given, "heat.conductance", 0.0)
+    return None if given is None else law_of(given, path, 0.0)
 
 
 def _wear(case: Case) -> dict[int, Wear]:
@@ -219,22 +229,25 @@ def _wear(case: Case) -> dict[int, Wear]:
 def _body_wear(case: Case, name: str, wear: BodyWearTable) -> Wear:
     """Wear of a body by one law, or by those of its parts; the others have the body's own."""
     if not wear.materials:
-        return _face_wear(case, wear, _track(case, wear))
+        return face_wear(wear, case.contact, _track(case, wear))
     parts = case.geometry.parts_of(name)
-    found = dict.fromkeys(parts, _face_wear(case, wear)) if wear.has_law else {}
+    found = dict.fromkeys(parts, face_wear(wear, case.contact)) if wear.has_law else {}
     own = {case.part_named(name, key): law for key, law in wear.materials.items()}
-    found |= {part: _face_wear(case, law) for part, law in own.items() if part is not None}
+    found |= {part: face_wear(law, case.contact) for part, law in own.items() if part is not None}
     return CompositeWear(found)
 
 
-def _face_wear(case: Case, wear: RateTable, track: Distribution | Track = IN_PLACE) -> FaceWear:
+def face_wear(
+    wear: RateTable, contact: InterfaceTable, track: Distribution | Track = IN_PLACE
+) -> FaceWear:
+    """Wear of a face in a contact, which defines the friction stress."""
     factors = wear.factor.multipliers
     if wear.law is not None:
         return FaceWear(wear.law, factors, track=track)
     κ, b, a = wear.coefficient_si(), wear.pressure_exponent, wear.velocity_exponent
     if wear.per == "pressure":
         return FaceWear(PowerWear(κ, b, a), factors, track=track, per=wear.per)
-    law = PowerWear.per_friction_stress(κ, case.contact.nominal_friction, b, a)
+    law = PowerWear.per_friction_stress(κ, contact.nominal_friction, b, a)
     return FaceWear(law, factors, b, track, wear.per)
 
 

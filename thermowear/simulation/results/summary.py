@@ -214,7 +214,8 @@ def conclude(end: Snapshot, extra: dict, time: float = 0.0, **recorded) -> tuple
         Further attributes of the result, such as its histories.
     """
     summary = _merged(summarise(end, time), extra)
-    return end, Result(end.interface, profile(end), summary, **recorded)
+    contacts = end.system.ranges_by_name
+    return end, Result(end.interface, profile(end), summary, contacts=contacts, **recorded)
 
 
 def _merged(one: dict, other: dict) -> dict:

@@ -176,7 +176,9 @@ class AnalysisHistory(ABC, Generic[State]):
         if shown is not None:
             with self._system.phases("output"):
                 self._outputs[state.time] = shown.interface, shown.friction, shown.track
-                self._observer.output(state.time, *self._outputs[state.time])
+                contacts = shown.system.ranges_by_name
+                interface, friction, track = self._outputs[state.time]
+                self._observer.output(state.time, interface, friction, track, contacts)
         self._keep_frame(state)
         if self.may_restart(state):
             self._mark_restart(state)

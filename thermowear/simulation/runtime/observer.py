@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -143,8 +143,9 @@ class Observer:
         interface: InterfaceFields,
         friction: FrictionInterface | None = None,
         track: WornTrack | None = None,
+        contacts: Mapping[str, slice] | None = None,
     ) -> None:
-        """An output time was reached."""
+        """An output time was reached; `contacts` are as in `results.Result`."""
 
     def checkpoint(self, saved: Saved) -> None:
         """A checkpoint to restart from; its data differ from rank to rank."""

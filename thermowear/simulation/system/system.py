@@ -118,6 +118,14 @@ class System:
         """
         return self.contacts.only
 
+    @property
+    def ranges_by_name(self) -> dict[str, slice]:
+        """Ranges of the contact points by the names of the interfaces; empty for a pair."""
+        if self.model.is_pair:
+            return {}
+        pairs = zip(self.model.interfaces, self.contacts.ranges, strict=True)
+        return {interface.name: points for interface, points in pairs}
+
     @cached_property
     def weights(self) -> np.ndarray:
         return self.contacts.weights

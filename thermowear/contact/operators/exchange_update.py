@@ -72,7 +72,7 @@ class ReferenceExchange(HeatExchange):
     @cached_property
     def rows(self) -> SingleResponses:
         """Rows of G, as columns."""
-        if self.face.symmetric:
+        if self.face.responses.symmetric:
             return self.columns
         return SingleResponses(self.transposed_response, self.coupling.shape[0])
 

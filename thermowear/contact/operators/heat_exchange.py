@@ -74,10 +74,8 @@ class FaceHeat:
         self, rise: tuple[np.ndarray, np.ndarray], friction_heat: np.ndarray, crossing: np.ndarray
     ) -> ThermalState:
         """State by the rises [K], and friction heat and heat from face 2 to 1 (n,) [W/m²]."""
-        f = self.partition
-        return ThermalState(
-            rise, (f * friction_heat + crossing, (1 - f) * friction_heat - crossing)
-        )
+        into_1 = self.partition * friction_heat + crossing
+        return ThermalState(rise, (into_1, friction_heat - into_1))
 
     def divided(self, conductance: np.ndarray) -> Division:
         """Divide conductances (n,) into parts that are finite and well scaled."""
@@ -106,20 +104,15 @@ class InterfaceHeat(FaceHeat):
         """
         return self.responses.each
 
-    @property
-    def symmetric(self) -> bool:
-        """True if these are symmetric."""
-        return self.responses.symmetric
-
     def exchange(self, conductance: np.ndarray) -> HeatExchange:
-        """Couple the faces by a conductance (n,), infinite in perfect contact, see `divided`."""
+        """Couple the faces by a conductance (n,), infinite in perfect contact."""
         return HeatExchange(self, conductance)
 
     @cached_property
     def values(self) -> tuple[sp.csr_array, sp.csr_array]:
         """Temperatures of both faces at the points per nodal value, shape (n, n_f)."""
-        first, second = zip(*(nodes.values for nodes in self.nodes), strict=True)
-        return sp.hstack(first).tocsr(), sp.hstack(second).tocsr()
+        one, two = (sp.hstack(side) for side in zip(*(n.values for n in self.nodes), strict=True))
+        return one.tocsr(), two.tocsr()
 
     @cached_property
     def functions(self) -> sp.csr_array:
@@ -137,15 +130,15 @@ class InterfaceHeat(FaceHeat):
     def on_nodes(self, heat: np.ndarray) -> np.ndarray:
         """Owned nodal heat (n_owned, k) of the bodies from that on the faces (n_f + …, k)."""
         n_owned, ranges = self.traces[0].shape[0], node_ranges([n.count for n in self.nodes])
-        each = zip(self.nodes, ranges, strict=True)
-        return np.sum([nodes.spread(heat[own], n_owned) for nodes, own in each], axis=0)
+        pairs = zip(self.nodes, ranges, strict=True)
+        return np.sum([nodes.spread(heat[own], n_owned) for nodes, own in pairs], axis=0)
 
 
 class HeatExchange:
     """Faces coupled by a conductance.
 
-    The unknowns are the nodal rises of both faces by the heat at the contact, and coefficients of
-    the heat that crosses beyond the direct part, see `exchange_matrix.divided`::
+    The unknowns are the nodal rises by the heat at the contact, and coefficients of the heat that
+    crosses beyond the direct part, see `exchange_matrix.divided`::
 
         x = (θ, z),   Q = b + N x,   θ = Φ Q,   0 = b_z + (N x)_z,   x = G b
 
@@ -163,7 +156,8 @@ class HeatExchange:
 
     def __init__(self, face: InterfaceHeat, conductance: np.ndarray):
         self.face, self.division = face, face.divided(conductance)
-        self._count = sum(nodes.count for nodes in face.nodes)
+        self._ranges = node_ranges([nodes.count for nodes in face.nodes])
+        self._count = self._ranges[-1].stop
         self._set_up()
 
     def _set_up(self) -> None:
@@ -239,14 +233,14 @@ class HeatExchange:
 
     def transposed_response(self, values: np.ndarray) -> np.ndarray:
         """Products ``Gᵀ values``, by columns."""
-        if self.face.symmetric:
+        if self.face.responses.symmetric:
             return self.response(values)
         adjoint = dgetrs(*self._factor, values, trans=1)[0]
         return self._risen([Φ.T for Φ in self.face.response], adjoint)
 
     def _risen(self, response: Sequence[np.ndarray], loads: np.ndarray) -> np.ndarray:
         """Rises of uncoupled bodies by nodal heat; the rows of the jumps are kept."""
-        ranges = zip(node_ranges([len(Φ) for Φ in response]), response, strict=True)
+        ranges = zip(self._ranges, response, strict=True)
         return np.concatenate([*(Φ @ loads[rows] for rows, Φ in ranges), loads[self._count :]])
 
 

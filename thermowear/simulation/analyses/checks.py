@@ -114,8 +114,9 @@ def deep_wear(system: System, analysis: Analysis, interface: InterfaceFields) ->
     fraction = GapWear(system).fraction(np.array([interface.wear_1, interface.wear_2]))
     if fraction <= allowed:
         return None
+    kind = f"a {analysis.type} analysis" + (" of several bodies" * (not system.model.is_pair))
     return (
-        f"the wear, which this {analysis.type} analysis keeps in the gap, comes to {fraction:.2%} "
+        f"the wear, which {kind} keeps in the gap, comes to {fraction:.2%} "
         "of the thickness behind the face or of its radius of curvature, or tilts elements by ten "
         f"times that: pressures and shapes are those of small wear, up to {allowed:.2%}"
     )

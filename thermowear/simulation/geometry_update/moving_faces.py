@@ -209,3 +209,14 @@ def smoothed_wear(problem: InterfaceProblem, state: InterfaceState, time: float)
     shares = np.divide(ours, whole, out=np.zeros_like(ours), where=whole > 0.0)
     found = state.worn - shares * excess
     return found if np.all(found >= 0.0) else state.worn
+
+
+def thickness_behind(system: System, pairing: Pairing, index: int) -> float:
+    """Thickness of a body behind the middle of a contact face [m]; every rank calls."""
+    bodies = system.bodies
+    out = (pairing.weights @ pairing.normals) * (1 if index == 0 else -1)
+    out = out / np.linalg.norm(out)
+    middle = np.average(pairing.points, axis=0, weights=pairing.weights)
+    mesh = bodies.each[pairing.sides[index].face.body].mesh
+    nodes = mesh.geometry.x[:, : len(middle)]
+    return max(system.comm.allgather(float(((middle - nodes) @ out).max(initial=0.0))))

@@ -26,7 +26,7 @@ from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import updated
-from .moving_faces import STEPPED, MovingFaces, smoothed_wear, steps_grow
+from .moving_faces import STEPPED, MovingFaces, smoothed_wear, steps_grow, thickness_behind
 from .wider_zone import UpdateCounts, meshed_wider, wider_zone
 
 _CHANGE = 5e-3
@@ -44,8 +44,7 @@ Principle = Callable[[System], SteadyState | None]
 class GapWear:
     """Wear kept in the gap of a system, relative to the dimensions of the bodies.
 
-    Dimensions are the thickness behind the face and the radius of curvature of either face; a tenth
-    of the element tilt (depth difference of its ends over its size) counts, too.
+    Thickness behind a face, and radii of curvature; a tenth of the tilt of elements counts, too.
 
     Attributes
     ----------
@@ -56,10 +55,8 @@ class GapWear:
     def __init__(self, system: System):
         self._system = system
         self.faces = MovingFaces(system)
-        self._each = [
-            (_FaceSize(system, pairing, self.faces.bodies), points)
-            for pairing, points in system.contacts
-        ]
+        sides = self.faces.bodies
+        self._each = [(_FaceSize(system, each, sides), own) for each, own in system.contacts]
 
     def depth(self, state: InterfaceState) -> np.ndarray:
         """Depths kept in the gap in a state, shape (2, n) [m]."""
@@ -78,7 +75,7 @@ class _FaceSize:
         facets, self._first = np.unique(side.facet, return_index=True)
         self._lengths = side.face.lengths[facets]
         self._curvature = max(float(curvatures(s.face).max()) for s in pairing.sides)
-        self._thickness = {side: _thickness(system, pairing, side) for side in sides}
+        self._thickness = {side: thickness_behind(system, pairing, side) for side in sides}
 
     def fraction(self, depth: np.ndarray) -> float:
         ratios = [0.0]
@@ -300,14 +297,3 @@ class OuterLoop:
             wished = self.allowed * float(np.clip(_CHANGE / change, 0.2, 2.0))
             self.allowed = float(np.clip(wished, 0.01 * automatic, _ROOM * automatic))
         return self._period(problem), replace(last, state=state)
-
-
-def _thickness(system: System, pairing: Pairing, index: int) -> float:
-    """Thickness of a body behind the middle of a contact face [m]; every rank calls."""
-    bodies = system.bodies
-    out = (pairing.weights @ pairing.normals) * (1 if index == 0 else -1)
-    out = out / np.linalg.norm(out)
-    middle = np.average(pairing.points, axis=0, weights=pairing.weights)
-    mesh = bodies.each[pairing.sides[index].face.body].mesh
-    nodes = mesh.geometry.x[:, : len(middle)]
-    return max(system.comm.allgather(float(((middle - nodes) @ out).max(initial=0.0))))

@@ -10,15 +10,11 @@ from typing import Any
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
+from ...contact.operators import heat_exchange
 from ...contact.operators.condensation import condense_heat
 from ...contact.operators.coupled_heat import AnyFace
 from ...contact.operators.heat import BaselineResponse, ThermalState
-from ...contact.operators.heat_exchange import (
-    CoupledDistortion,
-    InterfaceHeat,
-    baseline_response,
-    opened_by,
-)
+from ...contact.operators.heat_exchange import CoupledDistortion, InterfaceHeat
 from ...contact.operators.pressure import scaled
 from ...contact.operators.thermal_opening import ThermalDistortion
 from ...parallel import sum_over_ranks
@@ -132,13 +128,13 @@ class HeatOperators:
     def baseline(self, rise: np.ndarray) -> BaselineResponse:
         """Interface response to a nodal rise (n_owned,); every rank calls."""
         opening = self.opened([rise]) if self.distorts else None
-        return baseline_response(rise, self.face.traces, self._system.comm, opening)
+        return heat_exchange.baseline_response(rise, self.face.traces, self._system.comm, opening)
 
     def opened(self, rises: list[np.ndarray]) -> np.ndarray:
         """Weak gap opened by nodal rises, see `ThermalOpening.of`; every rank calls."""
         opening = self._system.thermal_opening
         if opening.per_rise:
-            return opened_by(opening.per_rise, rises, self._system.comm)
+            return heat_exchange.opened_by(opening.per_rise, rises, self._system.comm)
         return opening.of(rises)
 
     def known(self, conductance: np.ndarray) -> KnownExchange:

@@ -87,6 +87,20 @@ def load_direction(model: Model, interface: Interface, pairing: Pairing) -> np.n
     return mean / np.linalg.norm(mean)
 
 
+def load_directions(model: Model, contacts: Contacts) -> np.ndarray:
+    """Load directions of the first bodies at the contact points, shape (n, gdim)."""
+    each = zip(model.interfaces, contacts.each, strict=True)
+    directions = [load_direction(model, interface, pairing) for interface, pairing in each]
+    return np.repeat(directions, [len(pairing.weights) for pairing in contacts.each], axis=0)
+
+
+def approaches(first: Holder, motions: Sequence[RigidMotion]) -> np.ndarray:
+    """Displacement of the pivot of the first holder along its load per rigid mode, (n_modes,)."""
+    own, direction = len(first.free), np.array(first.load_direction)
+    moved = [motion.at(np.array(first.pivot)) @ direction for motion in motions[:own]]
+    return np.array([*moved, *np.zeros(len(motions) - own)], dtype=float)
+
+
 def applied(holder: Holder, motion: RigidMotion) -> float:
     """Generalised force of the loads of the holder on a motion; moments by the right-hand rule."""
     force = (holder.force or 0.0) * np.array(holder.load_direction)

@@ -28,17 +28,16 @@ from ...contact.operators.thermal_opening import DistortionRows, OpeningStorage,
 from ...contact.operators.traces import vector_trace
 from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import Pairing
-from ...laws.distribution import IN_PLACE, Distribution, joined_distributions
+from ...laws.distribution import Distribution
 from ...laws.interfaces import Law
-from ...laws.law_by_point import joined_laws
 from ...laws.motions import RigidMotion, combined
 from ...model.body import Facing
-from ...model.face_wear import Wear
 from ...model.model import Model, Zone
 from ...parallel import sum_over_ranks
 from ...timer import Phases
 from .contact_points import facing_parts
-from .rigid_modes import dead_resultant, load_direction
+from .joint_wear import JointWear
+from .rigid_modes import approaches, dead_resultant, load_directions
 from .setup_cache import CacheKeys, SetupCache
 from .thermal_system import ThermalSystem
 from .worn_geometry import WornGeometry
@@ -109,13 +108,7 @@ class System:
 
     @property
     def pairing(self) -> Pairing:
-        """Contact points of the only interface, with its faces.
-
-        Raises
-        ------
-        CaseError
-            If there are several.
-        """
+        """Contact points of the only interface, with its faces; see `Contacts.only`."""
         return self.contacts.only
 
     @property
@@ -150,12 +143,7 @@ class System:
     @cached_property
     def load_directions(self) -> np.ndarray:
         """Load direction of the first body at each point, unit vectors of shape (n, gdim)."""
-        each = zip(self.model.interfaces, self.contacts, strict=True)
-        directions = [
-            np.tile(load_direction(self.model, interface, pairing), (len(pairing.weights), 1))
-            for interface, (pairing, _) in each
-        ]
-        return np.concatenate(directions)
+        return load_directions(self.model, self.contacts)
 
     @cached_property
     def force_per_pressure(self) -> np.ndarray:
@@ -183,11 +171,7 @@ class System:
     @cached_property
     def approaches(self) -> np.ndarray:
         """Displacement of the pivot of the first holder along its load per mode, (n_modes,)."""
-        holder, result = self.model.holders[0], np.zeros(len(self.holder.motions))
-        direction, pivot = np.array(holder.load_direction), np.array(holder.pivot)
-        for mode in range(len(holder.free)):
-            result[mode] = self.holder.motions[mode].at(pivot) @ direction
-        return result
+        return approaches(self.model.holders[0], self.holder.motions)
 
     @cached_property
     def mean_pressure(self) -> float:
@@ -206,51 +190,23 @@ class System:
         return self.contacts.per_point([one.nominal_friction for one in self.model.interfaces])
 
     @cached_property
+    def _wear(self) -> JointWear:
+        return JointWear(self.model, self.contacts)
+
+    @cached_property
     def laws(self) -> dict[int, Law]:
         """Wear laws of the first (0) and of the second faces; faces without wear are left out."""
-        return {
-            side: joined_laws(
-                [None if w is None else w.law_at(p.groups[side]) for w, p in each],
-                [len(pairing.weights) for _, pairing in each],
-            )
-            for side, each in self._wear_of_sides.items()
-        }
+        return self._wear.laws
 
     @cached_property
     def spreads(self) -> dict[int, Distribution]:
         """Distribution of the wear of these faces, likewise."""
-        thickness = self.model.thickness or 1.0
-        return {
-            side: joined_distributions(
-                [
-                    IN_PLACE
-                    if wear is None
-                    else wear.distribution(pairing.points, pairing.weights, thickness)
-                    for wear, pairing in each
-                ],
-                [len(pairing.weights) for _, pairing in each],
-            )
-            for side, each in self._wear_of_sides.items()
-        }
-
-    @cached_property
-    def _wear_of_sides(self) -> dict[int, list[tuple[Wear | None, Pairing]]]:
-        """Wear of a side of every interface, with its points, for the sides that wear anywhere."""
-        interfaces = self.model.interfaces
-        worn = sorted({side for interface in interfaces for side in interface.wear})
-        each = self.contacts.each
-        return {
-            side: [(one.wear.get(side), p) for one, p in zip(interfaces, each, strict=True)]
-            for side in worn
-        }
+        return self._wear.spreads
 
     @cached_property
     def coverage(self) -> np.ndarray:
         """Fraction of the worn area of each face that is in contact at a time, shape (2, n)."""
-        result = np.ones((2, len(self.weights)))
-        for index, spread in self.spreads.items():
-            result[index] = spread.coverage
-        return result
+        return self._wear.coverage
 
     @cached_property
     def lost(self) -> np.ndarray:

@@ -117,7 +117,8 @@ def _is_assembly(tables: dict[str, Any]) -> bool:
     """Test for a case of several bodies, which has tables of holders."""
     geometry = tables.get("geometry")
     kind = geometry.get("type") if isinstance(geometry, dict) else None
-    return "holders" in tables or (kind in known_assemblies() and kind not in known_geometries())
+    only = known_assemblies().keys() - known_geometries().keys()
+    return "holders" in tables or (isinstance(kind, str) and kind in only)
 
 
 def _read(path: Path) -> dict[str, Any]:

@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.mechanics.thermal_forces import ThermalForces
-from ...bulk.spaces import Spaces
+from ...bulk.spaces import Spaces, distributed
 from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
 from .face_nodes import face_nodes
@@ -22,7 +22,6 @@ from .nodal_responses import NodalResponses
 from .pressure import Basis, PressureSpace, scaled
 from .rigid_motion import RigidHolder
 from .thermal_opening import DistortionRows, elastic_columns
-from .traces import distributed
 
 
 @dataclass(frozen=True)
@@ -123,14 +122,16 @@ def influence(
     near = np.zeros((len(touching), loads.shape[1]))
     kept, used = (thermal_loads,) * 2 if distortion is None else ((), thermal_loads[:1])
     per_rise = [np.zeros((G.columns.owned, loads.shape[1]), order="F") for G in kept]
+    spaces = elastic.spaces
     for found in elastic_columns(elastic, loads, used):
-        start, end = elastic.spaces.starts[found.body : found.body + 2]
-        inside = slice(*np.searchsorted(touching, (start, end)))
-        near[inside, found.columns] = found.displacements[touching[inside] - start]
+        bodies = spaces.groups[found.group]
+        own = np.arange(spaces.owned)[spaces.rows(*bodies)]
+        _, inside, rows = np.intersect1d(touching, own, assume_unique=True, return_indices=True)
+        near[inside, found.columns] = found.displacements[rows]
         for matrix, products, product in zip(kept, per_rise, found.per_rise, strict=False):
-            matrix.columns.split(products)[found.body][:, found.columns] = product
+            products[matrix.columns.rows(*bodies), found.columns] = product
         if distortion is not None:
-            distortion.add(found.body, found.columns, found.per_rise[0])
+            distortion.add(found.group, found.columns, found.per_rise[0])
     comm = elastic.bodies.comm
     return Influence(basis, weighted, trace, touching, near, tuple(per_rise), comm)
 

@@ -55,6 +55,7 @@ class EnrichedBodies:
         bodies = elastic.bodies
         surplus = surplus_spaces(bodies, degree, bodies.dim)
         clamped, *guided = supports(system.model)
+        clamped = (*clamped, *elastic.joints.surfaces)  # the details at a joint are not resolved
         held = [
             fixed_values(body, elastic.kinematics, space, clamped, guided)
             for body, space in zip(bodies.each, surplus.each, strict=True)
@@ -166,7 +167,8 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
     ]
     shifts = dict(zip(model.interface.faces, thermal.face.shifts, strict=True))
     bath = [transferring(body, kinematics, shifts) for body in bodies.each]
-    given, _ = given_rises(bodies, surplus, dict.fromkeys(heat.temperature, 0.0), None)
+    left_out = *heat.temperature, *conduction.joints.surfaces
+    given, _ = given_rises(bodies, surplus, dict.fromkeys(left_out, 0.0), None)
     return EnrichedProblem(
         conduction.spaces, surplus, terms, conduction.respond, (conduction.fixed, given), bath
     )

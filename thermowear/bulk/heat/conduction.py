@@ -186,6 +186,12 @@ class Conduction:
         residual = heat - multiply(self.conductivity, rise)
         return self._joined.multipliers(residual, self.joints.jumps(self.spaces, rise))
 
+    def joint_heat(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
+        """Nodal heat that the joints pass to the bodies [W], see `multipliers`; owned rows."""
+        if not self.joints.each:
+            return np.zeros(len(rise))
+        return -(self.joints.jump @ self.multipliers(rise, heat))
+
     def stored_heat(self, rise: np.ndarray) -> np.ndarray:
         """Nodal stored heat [J], owned rows; its sum over all ranks is that of the bodies."""
         assert self.capacity is not None
@@ -236,10 +242,8 @@ class Conduction:
         """Heat into the values with a prescribed temperature [W]."""
         if not self._has_prescribed:
             return np.zeros(0)
-        into = heat - multiply(self.conductivity, rise)
-        if self.joints.each:
-            into -= self.joints.jump @ self.multipliers(rise, heat)
-        return into[self.fixed]
+        heat = heat + self.joint_heat(rise, heat)
+        return (heat - multiply(self.conductivity, rise))[self.fixed]
 
     @cached_property
     def _from_prescribed(self) -> np.ndarray:

@@ -104,10 +104,15 @@ class EvenPaths:
         small.zeroRowsColumns(rows, diag=1.0)
         border = joints.border(range(self._bodies), slice(None))
         if border.count:  # where paths cross a joint, it is closed already
-            jump = sp.csr_matrix(self.joined(border.jump))
-            jump.data[np.abs(jump.data) < _PATH_TOLERANCE * np.abs(border.jump).max()] = 0.0
-            border = replace(border, jump=jump, closed=True)
+            jump, own = (self._joined_trace(trace) for trace in (border.jump, border.own))
+            border = replace(border, jump=jump, own=own, closed=True)
         return EvenFactor(self, factorised(small, border, held, symmetry, self._dim))
+
+    def _joined_trace(self, trace: sp.csr_matrix) -> sp.csr_matrix:
+        """Transposed trace on the unknowns, without rounding where its parts cancel."""
+        result = sp.csr_matrix(self.joined(trace))
+        result.data[np.abs(result.data) < _PATH_TOLERANCE * np.abs(trace).max()] = 0.0
+        return result
 
     def joined(self, loads: np.ndarray | sp.csr_matrix):
         """Loads on the unknowns from loads on the nodal values, by columns."""

@@ -6,24 +6,19 @@ from petsc4py import PETSc
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg.lapack import dpstrf
-from scipy.sparse.csgraph import connected_components
 
 from ...parallel import sum_over_ranks
 from ..direct_solver import DirectSolver
 from ..field import without_fixed
 from ..spaces import in_petsc
+from .conditions import conditions
 from .joint import Border
-
-_DEPENDENT = 1e-12
-"""Part of a condition that is not a combination of others, squared, below which it is one."""
 
 
 class JoinedSolver:
     """Triangular factorisation of a matrix bordered by the conditions of joints.
 
-    Same interface as `DirectSolver`: the multipliers are unknowns inside. Conditions on fixed
-    values alone, and those that follow from others, are left out.
+    Same interface as `DirectSolver`: the multipliers are unknowns inside, see `conditions`.
 
     Parameters
     ----------
@@ -42,14 +37,11 @@ class JoinedSolver:
         self._comm, self._matrix, self._border = matrix.comm.tompi4py(), matrix, border
         self._known = "none" if symmetry == "none" else "symmetric", dim
         self._fixed = fixed
-        free = without_fixed(border.jump, fixed)
-        self._kept = _independent(border, free, self._comm)
-        columns = free[:, self._kept]
-        self._scale = _scales(matrix, columns, self._comm)
-        sizes = matrix.getSizes()[0]
-        self._columns = in_petsc(
-            (columns @ sp.diags_array(self._scale)).tocsr(), sizes, matrix.comm
-        )
+        basis = conditions(border, fixed, self._comm)
+        columns, rows = without_fixed(border.jump, fixed) @ basis, matrix.getSizes()[0]
+        scale = sp.diags_array(_scales(matrix, columns, self._comm))
+        self._basis = (basis @ scale).tocsr()
+        self._columns = in_petsc(sp.csr_matrix(columns @ scale), rows, matrix.comm)
         self.repeat()
 
     def repeat(self) -> None:
@@ -57,21 +49,23 @@ class JoinedSolver:
         self._factor = DirectSolver(self._bordered(), *self._known)
 
     def _bordered(self) -> PETSc.Mat:
-        first, last = self._columns.getOwnershipRangeColumn()
-        scale = sp.diags_array(self._scale)
-        resistance = self._border.resistance[self._kept][:, self._kept]
-        # zeros are stored on the diagonal
-        resisting = -(scale @ resistance @ scale).tocsr() - 0.0 * sp.eye_array(len(self._kept))
-        sizes = self._columns.getSizes()[1]
-        block = in_petsc(sp.csr_matrix(resisting)[first:last], sizes, self._matrix.comm)
+        mine, count = self._mine, self._basis.shape[1]
+        resisting = self._basis.T @ self._border.resistance @ self._basis
+        stored = sp.csr_matrix(-resisting - 0.0 * sp.eye_array(count))  # zeros on the diagonal too
+        block = in_petsc(stored[mine], self._columns.getSizes()[1], self._matrix.comm)
         rows = [[self._matrix, self._columns], [self._columns.copy().transpose(), block]]
         nest = PETSc.Mat().createNest(rows, comm=self._matrix.comm)
         return nest.convert(PETSc.Mat.Type.AIJ)
 
     @property
+    def _mine(self) -> slice:
+        """Range of the multipliers of this rank."""
+        return slice(*self._columns.getOwnershipRangeColumn())
+
+    @property
     def negative_pivots(self) -> int:
         """Number of negative pivots beyond those of the multipliers: one each, if regular."""
-        return self._factor.negative_pivots - len(self._kept)
+        return self._factor.negative_pivots - self._basis.shape[1]
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Solve for one or several right-hand sides, see `DirectSolver.solve`."""
@@ -99,18 +93,14 @@ class JoinedSolver:
 
     def _response(self, loads: np.ndarray, jumps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Values and multipliers by loads and weak jumps."""
-        mine = slice(*self._columns.getOwnershipRangeColumn())
-        weak = (self._scale * jumps[self._kept])[mine]
+        weak = (self._basis.T @ jumps)[self._mine]
         found = self._factor.solve(np.concatenate([loads, weak]))
-        scaled = np.concatenate(self._comm.allgather(found[len(loads) :]))
-        multipliers = np.zeros(len(jumps))
-        multipliers[self._kept] = self._scale * scaled
-        return found[: len(loads)], multipliers
+        coefficients = np.concatenate(self._comm.allgather(found[len(loads) :]))
+        return found[: len(loads)], self._basis @ coefficients
 
     def _padded(self, loads: np.ndarray | sp.csr_matrix):
         """Loads with zeros for the multipliers of this rank."""
-        first, last = self._columns.getOwnershipRangeColumn()
-        none = last - first, *loads.shape[1:]
+        none = self._mine.stop - self._mine.start, *loads.shape[1:]
         if isinstance(loads, np.ndarray):
             return np.concatenate([loads, np.zeros(none)])
         return sp.vstack([loads, sp.csr_matrix(none)], format="csr")
@@ -126,34 +116,3 @@ def _scales(matrix: PETSc.Mat, columns: sp.csr_matrix, comm) -> np.ndarray:
     parts = sizes.T @ diagonal, sizes.sum(axis=0), columns.multiply(columns).sum(axis=0)
     weighted, summed, squared = sum_over_ranks(comm, np.array([np.ravel(p) for p in parts]))
     return weighted / summed / np.sqrt(squared)
-
-
-def _independent(border: Border, free: sp.csr_matrix, comm) -> np.ndarray:
-    """Conditions on the free values that do not follow from others, in ascending order.
-
-    Some can follow only where values are fixed, or joints form circles. They are found in the Gram
-    matrix by Cholesky's factorisation with pivots (LAPACK), in each of its blocks.
-
-    Parameters
-    ----------
-    border : Border
-    free : csr_matrix, shape (n_rows, m)
-        Its jumps without the rows of fixed values.
-    comm : mpi4py.MPI.Comm
-        Every rank calls.
-    """
-    gram = sum(comm.allgather((free.T @ free).tocsr()))
-    whole = sum_over_ranks(comm, np.ravel(border.jump.multiply(border.jump).sum(axis=0)))
-    size = gram.diagonal()
-    acting = np.flatnonzero(size > _DEPENDENT * whole)
-    scale = sp.diags_array(1 / np.sqrt(size[acting]))
-    gram = (scale @ gram[acting][:, acting] @ scale).tocsr()
-    resisted = border.resistance.diagonal()[acting] > 0.0
-    risky = ~resisted & (border.closed | (size[acting] < whole[acting]))
-    block = connected_components(gram, directed=False)[1]
-    kept: np.ndarray = np.ones(len(acting), dtype=bool)
-    for k in np.unique(block[risky]):
-        members = np.flatnonzero(block == k)
-        _, pivots, rank, _ = dpstrf(gram[members][:, members].toarray(), tol=_DEPENDENT)
-        kept[members[pivots[rank:] - 1]] = False
-    return acting[kept]

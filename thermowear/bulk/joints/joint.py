@@ -33,6 +33,8 @@ class Joint:
         Their glued surfaces.
     jump : csr_matrix, shape (n_owned, m)
         Cᵀ: transposed matrix of the weak jump of a field across the joint.
+    own : csr_matrix, shape (n_owned, m)
+        Part of it in the first body, on the facets of which the multipliers are defined.
     resistance : csr_matrix, shape (m, m)
         R: weak jump per multiplier, positive definite or, where the field is continuous, zero.
     """
@@ -40,6 +42,7 @@ class Joint:
     bodies: tuple[int, int]
     surfaces: tuple[str, str]
     jump: sp.csr_matrix
+    own: sp.csr_matrix
     resistance: sp.csr_matrix
 
     @property
@@ -54,8 +57,8 @@ class Border:
 
     Attributes
     ----------
-    jump : csr_matrix, shape (n_rows, m)
-        Cᵀ of all joints of the group.
+    jump, own : csr_matrix, shape (n_rows, m)
+        Those of all joints of the group, see `Joint`.
     resistance : csr_matrix, shape (m, m)
     columns : ndarray of int, shape (m,)
         Numbers of its multipliers among those of all joints.
@@ -64,6 +67,7 @@ class Border:
     """
 
     jump: sp.csr_matrix
+    own: sp.csr_matrix
     resistance: sp.csr_matrix
     columns: np.ndarray
     closed: bool
@@ -118,11 +122,12 @@ class Joints:
         columns = [np.arange(*self.starts[k : k + 2]) for k in own]
         if not own:
             none = sp.csr_matrix((0, 0))
-            return Border(none, none, np.zeros(0, dtype=int), False)
+            return Border(none, none, none, np.zeros(0, dtype=int), False)
         position = {body: k for k, body in enumerate(bodies)}
         pairs = [(position[one], position[two]) for one, two in (self.each[k].bodies for k in own)]
         return Border(
             sp.hstack([self.each[k].jump[rows] for k in own], format="csr"),
+            sp.hstack([self.each[k].own[rows] for k in own], format="csr"),
             sp.block_diag([self.each[k].resistance for k in own], format="csr"),
             np.concatenate(columns),
             closed=len(own) + len(groups_of(len(bodies), pairs)) > len(bodies),

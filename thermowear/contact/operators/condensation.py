@@ -123,10 +123,11 @@ def influence(
     kept, used = (thermal_loads,) * 2 if distortion is None else ((), thermal_loads[:1])
     per_rise = [np.zeros((G.columns.owned, loads.shape[1]), order="F") for G in kept]
     spaces = elastic.spaces
+    body = np.searchsorted(spaces.starts, touching, side="right") - 1
     for found in elastic_columns(elastic, loads, used):
         bodies = spaces.groups[found.group]
-        own = np.arange(spaces.owned)[spaces.rows(*bodies)]
-        _, inside, rows = np.intersect1d(touching, own, assume_unique=True, return_indices=True)
+        inside = np.flatnonzero(np.isin(body, bodies))
+        rows = spaces.within(found.group, touching[inside])
         near[inside, found.columns] = found.displacements[rows]
         for matrix, products, product in zip(kept, per_rise, found.per_rise, strict=False):
             products[matrix.columns.rows(*bodies), found.columns] = product

@@ -111,7 +111,7 @@ def _elastic_joint(spaces: Spaces, tie: Pairing) -> Joint:
     weighted = sp.diags_array(tie.weights) @ _functions(tie, spaces.degree)
     units = (np.tile(unit, (len(tie.weights), 1)) for unit in np.eye(spaces.components))
     jump = sp.hstack([vector_trace(spaces, tie, unit) @ weighted for unit in units], format="csr")
-    return _joint(tie, jump, sp.csr_matrix((jump.shape[1],) * 2))
+    return _joint(spaces, tie, jump, sp.csr_matrix((jump.shape[1],) * 2))
 
 
 def _thermal_joint(spaces: Spaces, tie: Pairing, conductance: float) -> Joint:
@@ -121,7 +121,7 @@ def _thermal_joint(spaces: Spaces, tie: Pairing, conductance: float) -> Joint:
     first, second = (value_trace(spaces, side) for side in tie.sides)
     weighted = sp.diags_array(tie.weights) @ functions
     resistance = weighted.T @ functions / (conductance or 1.0)
-    return _joint(tie, ((second - first) @ weighted).tocsr(), sp.csr_matrix(resistance))
+    return _joint(spaces, tie, ((second - first) @ weighted).tocsr(), sp.csr_matrix(resistance))
 
 
 def _functions(tie: Pairing, degree: int) -> sp.csr_array:
@@ -129,6 +129,7 @@ def _functions(tie: Pairing, degree: int) -> sp.csr_array:
     return sp.csr_array(pressure_basis(tie, max(degree - 1, 1)))
 
 
-def _joint(tie: Pairing, jump: sp.csr_matrix, resistance: sp.csr_matrix) -> Joint:
+def _joint(spaces: Spaces, tie: Pairing, jump: sp.csr_matrix, resistance: sp.csr_matrix) -> Joint:
     first, second = (side.face for side in tie.sides)
-    return Joint((first.body, second.body), (first.name, second.name), jump, resistance)
+    own = spaces.placed(spaces.rows(first.body), jump[spaces.rows(first.body)])
+    return Joint((first.body, second.body), (first.name, second.name), jump, own, resistance)

@@ -123,9 +123,11 @@ def temperature_change(
         for trace, side in zip(face.traces, pairing.sides, strict=True)
     ]
     fluxes = zip(traces, temperatures.faces.flux, strict=True)
-    loads = sum(trace @ (face.weights * flux) for trace, flux in fluxes)
+    loads = np.sum([trace @ (face.weights * flux) for trace, flux in fluxes], axis=0)
+    nodal = loads[: conduction.spaces.owned]
+    nodal += conduction.joint_heat(temperatures.rise, nodal)
     before = problem.field(temperatures.rise)
-    change = problem.correction(problem.residual(before, np.asarray(loads)))
+    change = problem.correction(problem.residual(before, loads))
     uncoupled = np.array([sum_over_ranks(system.comm, trace.T @ change) for trace in traces])
     # the nodal space cannot represent the response to a flux that levels finer details
     weighted = scaled(face.weights, face.basis)

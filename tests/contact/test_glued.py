@@ -120,6 +120,28 @@ def test_uniform_expansion(cells):
     assert largest(reactions) < 1e-9 * strain * E * WIDTH**2
 
 
+@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("counts", [(4, 4), (5, 2)])
+def test_an_inclined_joint_that_ends_at_a_plane_of_symmetry(counts, degree):
+    """requirement: uniform traction on the joint, also in the direction that the supports fix."""
+    upper = Box("upper", ((0.0, 0.04), (0.0, 0.02)), (counts[0], 2))
+    lower = Box("lower", ((0.0, 0.04), (-0.02, 0.0)), (counts[1], 2))
+
+    def inclined(p):  # the joint, while the outer faces stay level
+        x, y = p.T
+        return np.column_stack([x, y + 0.3 * x * (1 - np.abs(y) / 0.02)])
+
+    bodies = boxes(upper, lower, place=inclined)
+    materials = {"upper": (E, 0.0), "lower": (E, 0.0)}
+    known = bodies, degree, [("upper_low_y", "lower_high_y")], materials, ["lower_low_x"]
+    elastic, _ = glued_elasticity(*known, symmetric=("upper_low_x",))
+    pull = 1e8 * PLANE.thickness * np.array([1.0, 0.0])
+    u = elastic.solve(forces(elastic, {"upper_high_x": 0.008 * pull, "lower_high_x": 0.032 * pull}))
+    exact = 1e8 / E * elastic.nodes()[:, 0]
+    assert largest(u[::2] - exact) < 1e-10 * largest(exact)
+    assert largest(u[1::2]) < 1e-10 * largest(exact)
+
+
 def test_rings_glued_at_a_cylinder():
     """requirement: Lamé's solution of a thick ring under inner pressure, by two glued rings."""
     a, b, c, p, ν, h = 0.05, 0.07, 0.1, 1e8, 0.3, 0.02

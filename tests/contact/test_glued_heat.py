@@ -5,9 +5,11 @@ from math import inf
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from scipy.optimize import brentq
 
 from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction, surface_heat
+from thermowear.bulk.heat.varying import varying_conduction
 from thermowear.bulk.kinematics import Axisymmetric, Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
@@ -17,6 +19,8 @@ from thermowear.contact.operators.condensation import (
     influence,
     pressure_loads,
 )
+from thermowear.contact.operators.coupled_heat import CoupledHeat
+from thermowear.contact.operators.heat import BaselineResponse
 from thermowear.contact.operators.heat_exchange import FaceHeat
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.thermal_opening import ThermalOpening, condense_distortion
@@ -26,7 +30,7 @@ from thermowear.contact.search.pairing import pair
 from thermowear.contact.ties.joints import elastic_joints, thermal_joints, transferred
 from thermowear.parallel import sum_over_ranks
 
-from ..bulk.fields import empty_matrix
+from ..bulk.fields import empty_matrix, times
 from .glued import COMM, PLANE, Box, boxes, glued_conduction, ties_of
 from .test_glued import (
     HEIGHTS,
@@ -233,6 +237,80 @@ def test_condensed_heat(cells, stored):
     )
     np.testing.assert_allclose(per_heat, direct, rtol=1e-8, atol=1e-9 * np.abs(direct).max())
     np.testing.assert_allclose(opening.of([rise]), direct, rtol=1e-8)
+
+
+@pytest.mark.parametrize("conductance", [0.0, 3e3, inf])
+def test_exchange_without_condensation(conductance):
+    """requirement: heat exchanged with a glued body is the same, condensed or not."""
+    _, pairing, conducting, (traces, shifts) = pad_on_disk()
+    at_points = pairing.weights, pressure_basis(pairing, 1), traces, shifts, 0.3
+    condensed = condense_heat(conducting, FaceHeat(*at_points))
+    friction = 1e5 * (1.5 + np.cos(70 * pairing.points[:, 0]))
+    none, h = np.zeros(len(friction)), np.full(len(friction), conductance)
+    rises = [
+        face.exchange(h).state(friction, BaselineResponse((none, none))).rise
+        for face in (condensed, CoupledHeat(*at_points, conducting))
+    ]
+    np.testing.assert_allclose(rises[0], rises[1], rtol=1e-7)
+
+
+@pytest.mark.parametrize("conductance", [inf, 2e3])
+def test_conductivity_that_varies(conductance):
+    """requirement: slabs in series by Kirchhoff's integral, and the heat balance."""
+    bodies, joined, _ = stack("quadrilateral", True)
+    given = {"upper_high_y": HOT, "lower_low_y": 0.0}
+    known = bodies, 3, joined, [conductance], CONDUCTIVITIES, given
+    linear, _ = glued_conduction(*known)
+    materials = {name: ThermalMaterial(*values) for name, values in CONDUCTIVITIES.items()}
+    known = bodies, PLANE, materials, {"lower": Rising()}, 0.0
+    conducting = varying_conduction(linear, *known)
+    rise = none = np.zeros(conducting.spaces.owned)
+    for _ in range(12):
+        rise = conducting.tangent(rise).solve(conducting.linearisation_error(rise, rise))
+    (k1, _), (k2, _) = CONDUCTIVITIES.values()
+
+    def excess(flux):
+        at_joint = HOT - flux * (HEIGHTS[0] / k1 + 1 / conductance)
+        return k2 * Rising().integral(0.0, at_joint) / HEIGHTS[1] - flux
+
+    flux = brentq(excess, 0.0, HOT / (HEIGHTS[0] / k1), xtol=1e-10)
+    z = conducting.spaces.nodes()[:, 1]
+    upper = conducting.spaces.nodes_of(bodies, "upper")
+    exact = HOT - flux / k1 * (HEIGHTS[0] - z)
+    assert largest((rise - exact)[upper]) < 1e-9 * HOT
+    turnover = conducting.exchanged_heat(rise, none)
+    assert turnover == pytest.approx(2 * flux * WIDTH * PLANE.thickness, rel=1e-8)
+    assert abs(sum(conducting.losses(rise, none))) < 1e-8 * turnover
+
+
+class Rising:
+    """Property that grows linearly with temperature."""
+
+    def value(self, x):
+        return 1 + x / HOT
+
+    def slope(self, x):
+        return np.full_like(x, 1 / HOT)
+
+    def integral(self, start, x):
+        return x - start + (x**2 - start**2) / (2 * HOT)
+
+
+@pytest.mark.parametrize("conductance", [inf, 2e3])
+def test_heat_conducted_in_bodies_and_joints(conductance):
+    """requirement: heat times temperature is conducted, by the bodies and through the joint."""
+    bodies, joined, _ = stack("quadrilateral", True)
+    cooling = {"lower_low_y": 400.0}
+    known = bodies, 3, joined, [conductance], CONDUCTIVITIES, {}, cooling
+    conducting, _ = glued_conduction(*known)
+    spaces = conducting.spaces
+    heat = surface_heat(bodies, PLANE, spaces, "upper_high_y", 1e4)
+    rise = conducting.respond(heat)
+    passed = conducting.joints.passed(spaces, rise[:, None])[0, 0]
+    whole = sum_over_ranks(COMM, rise @ (times(conducting.conductivity, rise)))
+    flux, area = 1e4, WIDTH * PLANE.thickness
+    assert passed == pytest.approx(flux**2 * area / conductance, rel=1e-9)
+    assert whole + passed == pytest.approx(sum_over_ranks(COMM, rise @ heat), rel=1e-10)
 
 
 def numbers():

@@ -16,6 +16,7 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
+from scipy.sparse.linalg import splu
 
 from ...parallel import sum_over_ranks
 from ..spaces import Rows, Spaces, groups_of
@@ -107,6 +108,18 @@ class Joints:
     def jumps(self, spaces: Spaces, values: np.ndarray) -> np.ndarray:
         """Weak jumps ``C u`` of owned values (n_owned,), shape (m,). Every rank calls."""
         return sum_over_ranks(spaces.comm, self.jump.T @ values)
+
+    def passed(self, spaces: Spaces, fields: np.ndarray) -> np.ndarray:
+        """Energy ``Xᵀ Cᵀ R⁻¹ C X`` of fields X (n_owned, r) in joints with a resistance, (r, r).
+
+        Every rank calls.
+        """
+        result = np.zeros((fields.shape[1],) * 2)
+        for joint in self.each:
+            if joint.resistance.nnz:
+                jumps = sum_over_ranks(spaces.comm, joint.jump.T @ fields)
+                result += jumps.T @ splu(joint.resistance.tocsc()).solve(jumps)
+        return result
 
     def split(self, multipliers: np.ndarray) -> list[np.ndarray]:
         """Multipliers (m,) of each joint."""

@@ -120,8 +120,9 @@ def _thermal_joint(spaces: Spaces, tie: Pairing, conductance: float) -> Joint:
         functions = functions[:, :0]
     first, second = (value_trace(spaces, side) for side in tie.sides)
     weighted = sp.diags_array(tie.weights) @ functions
-    resistance = weighted.T @ functions / (conductance or 1.0)
-    return _joint(spaces, tie, ((second - first) @ weighted).tocsr(), sp.csr_matrix(resistance))
+    resistance = sp.csr_matrix(weighted.T @ functions / (conductance or 1.0))
+    resistance.eliminate_zeros()
+    return _joint(spaces, tie, ((second - first) @ weighted).tocsr(), resistance)
 
 
 def _functions(tie: Pairing, degree: int) -> sp.csr_array:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ctypes
-from itertools import pairwise
 
 from petsc4py import PETSc
 
@@ -153,82 +152,6 @@ class DirectSolver:
             columns.shape[::-1], csr=(*indices, columns.data), comm=self._comm
         )
         return PETSc.Mat().createTranspose(transposed)
-
-
-class BodySolvers:
-    """Triangular factorisation of a matrix that does not couple the bodies.
-
-    Parameters
-    ----------
-    matrix : petsc4py.PETSc.Mat
-        Assembled and distributed by rows.
-    starts : ndarray of int, shape (n_bodies + 1,)
-        Owned rows at which the bodies start, and their number.
-    symmetry, dim : str, int
-        See `DirectSolver`.
-    one_at_a_time : bool
-        True if a factor is made when it is first needed, and freed before that of another body.
-    """
-
-    def __init__(
-        self,
-        matrix: PETSc.Mat,
-        starts: np.ndarray,
-        symmetry: str,
-        dim: int,
-        one_at_a_time: bool = False,
-    ):
-        self._symmetry, self._dim, self._alone = symmetry, dim, one_at_a_time
-        self._rows = [slice(start, end) for start, end in pairwise(starts)]
-        self._blocks = [_diagonal_block(matrix, rows) for rows in self._rows]
-        assert sum(map(_entries, self._blocks)) == _entries(matrix), "the matrix couples bodies"
-        self._factors: dict[int, DirectSolver] = {}
-        if not one_at_a_time:
-            for index in range(len(self._rows)):
-                self.of(index)
-
-    def of(self, index: int) -> DirectSolver:
-        """Solver of one body. Every rank calls."""
-        if index not in self._factors:
-            self.release()
-            self._factors[index] = DirectSolver(self._blocks[index], self._symmetry, self._dim)
-        return self._factors[index]
-
-    def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
-        """Solve for one or several right-hand sides, see `DirectSolver.solve`."""
-        result = np.empty(loads.shape, order="F")
-        for index, rows in enumerate(self._rows):
-            result[rows] = self.of(index).solve(loads[rows])
-        return result
-
-    def solve_transposed(self, loads: np.ndarray) -> np.ndarray:
-        """Solve with the transposed matrix; dense loads, shapes as in `solve`."""
-        result = np.empty(loads.shape, order="F")
-        for index, rows in enumerate(self._rows):
-            result[rows] = self.of(index).solve_transposed(loads[rows])
-        return result
-
-    def release(self) -> None:
-        """Free the memory of a factor that is not kept anyway."""
-        if self._alone:
-            self.destroy()
-
-    def destroy(self) -> None:
-        """Free the memory of the factors."""
-        while self._factors:
-            self._factors.popitem()[1].destroy()
-
-
-def _diagonal_block(matrix: PETSc.Mat, rows: slice) -> PETSc.Mat:
-    """Part of a matrix with given owned rows, and columns alike. Every rank calls."""
-    first = matrix.getOwnershipRange()[0] + rows.start
-    own = PETSc.IS().createStride(int(rows.stop - rows.start), int(first), 1, comm=matrix.comm)
-    return matrix.createSubMatrix(own, own)
-
-
-def _entries(matrix: PETSc.Mat) -> int:
-    """Number of entries on all ranks."""
-    return int(matrix.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"])
 
 
 def return_freed_memory() -> None:

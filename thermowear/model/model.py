@@ -13,6 +13,7 @@ from ..laws.time_course import LoadHistory, TimeFunction
 from .body import Body, Material
 from .conditions import Heat, Holder, Motion
 from .interface import Interface
+from .tie import Tie, glued_bodies
 
 Solver = Literal["auto", "direct", "multigrid"]
 """Linear solver of bodies in space."""
@@ -95,6 +96,8 @@ class Model:
     holders : tuple of Holder
     meshes : MeshSource
     discretisation : Discretisation
+    ties : tuple of Tie
+        Glued faces.
     heat : Heat or None
         None: isothermal.
     thickness : float or None
@@ -122,6 +125,7 @@ class Model:
     sector: float = 1.0
     symmetry: tuple[str, ...] = ()
     title: str = ""
+    ties: tuple[Tie, ...] = ()
 
     def __post_init__(self):
         if not self.interfaces or not self.holders:
@@ -138,6 +142,11 @@ class Model:
     def is_pair(self) -> bool:
         """True for two bodies with one interface, of which the first one is held."""
         return len(self.bodies) == 2 and len(self.interfaces) == len(self.holders) == 1
+
+    @cached_property
+    def groups(self) -> list[tuple[int, ...]]:
+        """Indices of the bodies of each group: of one body, or of those glued to each other."""
+        return glued_bodies(len(self.bodies), self.ties)
 
     @cached_property
     def interface(self) -> Interface:

@@ -73,7 +73,8 @@ class ResultsFolder:
 
     def __init__(self, path: Path, tables: dict, ranks: int, overwrite: bool):
         self.path = path
-        names = list(tables.get("contacts", {}))
+        contacts = tables.get("contacts", {}).items()
+        names = [name for name, table in contacts if not table.get("tie")]
         self._run = run_started(ranks=ranks, **({"contacts": names} if names else {}))
         self._rows: dict[str, RowWriter] = {}
         self._made = not os.path.exists(path)  # Path.exists raises an error for invalid names

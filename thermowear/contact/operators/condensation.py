@@ -14,15 +14,14 @@ import scipy.sparse as sp
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.mechanics.thermal_forces import ThermalForces
-from ...bulk.spaces import Spaces
+from ...bulk.spaces import Spaces, distributed
 from ...parallel import sum_over_ranks
-from .face_nodes import nodes_by_body
+from .face_nodes import nodes_by_group
 from .heat_exchange import FaceHeat, InterfaceHeat
 from .nodal_responses import NodalResponses
 from .pressure import Basis, PressureSpace, scaled
 from .rigid_motion import RigidHolder
 from .thermal_opening import DistortionRows, elastic_columns
-from .traces import distributed
 
 
 @dataclass(frozen=True)
@@ -124,14 +123,17 @@ def influence(
     near = np.zeros((len(touching), loads.shape[1]))
     kept, used = (thermal_loads,) * 2 if distortion is None else ((), thermal_loads[:1])
     per_rise = [np.zeros((G.columns.owned, loads.shape[1]), order="F") for G in kept]
+    spaces = elastic.spaces
+    body = np.searchsorted(spaces.starts, touching, side="right") - 1
     for found in elastic_columns(elastic, loads, used):
-        start, end = elastic.spaces.starts[found.body : found.body + 2]
-        inside = slice(*np.searchsorted(touching, (start, end)))
-        near[inside, found.columns] = found.displacements[touching[inside] - start]
+        bodies = spaces.groups[found.group]
+        inside = np.flatnonzero(np.isin(body, bodies))
+        rows = spaces.within(found.group, touching[inside])
+        near[inside, found.columns] = found.displacements[rows]
         for matrix, products, product in zip(kept, per_rise, found.per_rise, strict=False):
-            matrix.columns.split(products)[found.body][:, found.columns] = product
+            products[matrix.columns.rows(*bodies), found.columns] = product
         if distortion is not None:
-            distortion.add(found.body, found.columns, found.per_rise[0])
+            distortion.add(found.group, found.columns, found.per_rise[0])
     comm = elastic.bodies.comm
     return Influence(basis, weighted, trace, touching, near, tuple(per_rise), comm)
 
@@ -161,7 +163,7 @@ def condense_heat(conduction: Conduction, face: FaceHeat) -> InterfaceHeat:
 
     The solutions follow when they are first needed, see `NodalResponses`. Every rank calls.
     """
-    nodes = nodes_by_body(conduction.spaces, face.traces)
+    nodes = nodes_by_group(conduction.spaces, face.traces)
     responses = NodalResponses(conduction, nodes)
     at_points: dict[str, Any] = {f.name: getattr(face, f.name) for f in fields(FaceHeat)}
     return InterfaceHeat(**at_points, nodes=nodes, responses=responses)

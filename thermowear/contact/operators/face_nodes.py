@@ -1,9 +1,8 @@
-"""Nodes of the temperature on the contact faces of a body; all ranks hold their values."""
+"""Nodes of the temperature on the contact faces of a body, or of glued ones; on all ranks."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,7 +12,7 @@ from ...bulk.spaces import Spaces
 
 @dataclass(frozen=True)
 class FaceNodes:
-    """Nodes of the temperature on the contact faces of one body, numbered alike on all ranks.
+    """Nodes of the temperature on the faces of a body, or of glued ones, numbered on all ranks.
 
     Attributes
     ----------
@@ -47,10 +46,10 @@ class FaceNodes:
         return result
 
 
-def nodes_by_body(
+def nodes_by_group(
     spaces: Spaces, traces: tuple[sp.csr_matrix, sp.csr_matrix]
 ) -> tuple[FaceNodes, ...]:
-    """Nodes on the contact faces of each body that has any, from their transposed traces.
+    """Nodes on the contact faces of each group of bodies that has any, from transposed traces.
 
     Every rank calls.
 
@@ -61,10 +60,10 @@ def nodes_by_body(
     traces : tuple of csr_matrix, shape (n_owned, n)
         Transposed traces of the first and of the second faces.
     """
-    used = np.diff(traces[0].indptr) + np.diff(traces[1].indptr) > 0
-    found = []
-    for start, end in pairwise(spaces.starts):
-        rows = start + np.flatnonzero(used[start:end])
+    used = np.flatnonzero(np.diff(traces[0].indptr) + np.diff(traces[1].indptr))
+    found, every = [], np.arange(spaces.owned)
+    for bodies in spaces.groups:
+        rows = np.intersect1d(used, every[spaces.rows(*bodies)])
         parts = spaces.comm.allgather([trace[rows] for trace in traces])
         first, second = (sp.csr_array(sp.vstack(side).T) for side in zip(*parts, strict=True))
         if first.shape[1]:

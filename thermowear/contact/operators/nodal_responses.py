@@ -42,13 +42,13 @@ class NodalResponses:
 
 
 def _nodal_response(conduction: Conduction, face: FaceNodes) -> np.ndarray:
-    """Rise of the nodes of a body per heat into each of them. Every rank calls."""
-    spaces, index = conduction.spaces, conduction.spaces.body_of(face.rows)
-    body, rows = conduction.in_body(index), face.rows - spaces.starts[index]
-    nodes, n_owned = face.first + np.arange(len(rows)), len(body.fixed)
+    """Rise of the nodes of a group per heat into each of them. Every rank calls."""
+    spaces, index = conduction.spaces, conduction.spaces.group_of(face.rows)
+    group, rows = conduction.in_group(index), spaces.within(index, face.rows)
+    nodes, n_owned = face.first + np.arange(len(rows)), len(group.fixed)
     heat = sp.csc_matrix((np.ones(len(rows)), (rows, nodes)), shape=(n_owned, face.count))
     result = np.empty((face.count, face.count), order="F")
     for columns in blocks(face.count, spaces.dim):
-        rises = body.respond(heat[:, columns].tocsr())
+        rises = group.respond(heat[:, columns].tocsr())
         result[:, columns] = np.vstack(spaces.comm.allgather(rises[rows]))
     return result

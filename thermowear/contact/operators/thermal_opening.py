@@ -29,22 +29,22 @@ _STORED = 0.05
 
 
 @dataclass(frozen=True)
-class BodyColumns:
-    """Solutions of one body for a range of pressure functions.
+class GroupColumns:
+    """Solutions of a group of bodies for a range of pressure functions.
 
     Attributes
     ----------
-    body : int
-        Index of the body.
+    group : int
+        Index of the group.
     columns : slice
         Range of pressure functions.
     displacements : ndarray, shape (n_own, width)
-        Displacements of the body [m per coefficient].
+        Displacements of the group [m per coefficient].
     per_rise : list of ndarray, shape (n_own of the temperature, width)
-        Weak gap per nodal rise of the body, one for each thermal load matrix [m³/K].
+        Weak gap per nodal rise of the group, one for each thermal load matrix [m³/K].
     """
 
-    body: int
+    group: int
     columns: slice
     displacements: np.ndarray
     per_rise: list[np.ndarray]
@@ -52,8 +52,8 @@ class BodyColumns:
 
 def elastic_columns(
     elastic: Elasticity, loads: sp.csc_matrix, matrices: Sequence[ThermalForces] = ()
-) -> Iterator[BodyColumns]:
-    """Solve for sparse nodal loads (n_owned, m), body by body. Every rank calls.
+) -> Iterator[GroupColumns]:
+    """Solve for sparse nodal loads (n_owned, m), group by group. Every rank calls.
 
     Parameters
     ----------
@@ -62,15 +62,21 @@ def elastic_columns(
     matrices : sequence of ThermalForces
         Thermal load matrices.
     """
-    parts = elastic.spaces.split(loads.tocsr())
-    for index, (body, own) in enumerate(zip(elastic.each, parts, strict=True)):
-        transposed = [matrix.each[index].transpose(PETSc.Mat()) for matrix in matrices]
-        rows, by_columns = Spaces((body.space,)).total, sp.csc_matrix(own)
-        with body.solver_of_columns() as solve:
-            for columns in blocks(loads.shape[1], elastic.bodies.dim, rows):
+    by_rows = loads.tocsr()
+    for index, (group, bodies) in enumerate(
+        zip(elastic.groups, elastic.spaces.groups, strict=True)
+    ):
+        transposed = [[m.each[k].transpose(PETSc.Mat()) for k in bodies] for m in matrices]
+        by_columns = sp.csc_matrix(by_rows[elastic.spaces.rows(*bodies)])
+        with group.solver_of_columns() as solve:
+            for columns in blocks(loads.shape[1], elastic.bodies.dim, group.spaces.total):
                 displacements = solve(by_columns[:, columns].tocsr())
-                products = [_product(matrix, displacements) for matrix in transposed]
-                yield BodyColumns(index, columns, displacements, products)
+                split = group.spaces.split(displacements)
+                products = [
+                    np.vstack([_product(*pair) for pair in zip(each, split, strict=True)])
+                    for each in transposed
+                ]
+                yield GroupColumns(index, columns, displacements, products)
 
 
 def _product(matrix: PETSc.Mat, columns: np.ndarray) -> np.ndarray:
@@ -159,7 +165,7 @@ class ThermalOpening:
     def by_columns(
         self, spaces: Spaces, slopes: Sequence[np.ndarray] = ()
     ) -> Iterator[tuple[int, slice, np.ndarray]]:
-        """Weak gap per nodal rise of a body (n_own, width), with the range of pressure functions.
+        """Weak gap per nodal rise of a group (n_own, width), with the range of pressure functions.
 
         The rises of the matrices after the first are `slopes` (n_owned,) times that of the first.
         Every rank calls.
@@ -170,15 +176,16 @@ class ThermalOpening:
             Of the temperatures.
         slopes : sequence of ndarray
         """
-        slopes_in = list(zip(*map(spaces.split, slopes), strict=True)) or [()] * len(spaces.each)
+        rows = [spaces.rows(*bodies) for bodies in self.elastic.spaces.groups]
+        slopes_in = [[slope[own] for slope in slopes] for own in rows]
         if self.per_rise:
-            for index, split in enumerate(zip(*map(spaces.split, self.per_rise), strict=True)):
+            for group, own in enumerate(rows):
                 for columns in blocks(self.loads.shape[1], self.elastic.bodies.dim):
-                    parts = [response[:, columns] for response in split]
-                    yield index, columns, _combined(parts, slopes_in[index])
+                    parts = [response[own, columns] for response in self.per_rise]
+                    yield group, columns, _combined(parts, slopes_in[group])
             return
         for found in elastic_columns(self.elastic, self.loads, self.matrices[: 1 + len(slopes)]):
-            yield found.body, found.columns, _combined(found.per_rise, slopes_in[found.body])
+            yield found.group, found.columns, _combined(found.per_rise, slopes_in[found.group])
 
     def _forces(self, rises: Iterable[np.ndarray]) -> np.ndarray:
         pairs = zip(self.matrices, rises, strict=False)
@@ -230,19 +237,18 @@ class DistortionRows:
 
     def __init__(self, conduction: Conduction, nodes: tuple[FaceNodes, ...], count: int):
         self._conduction, self._nodes, self._count = conduction.for_columns(), nodes, count
-        self._bodies = [conduction.spaces.body_of(own.rows) for own in nodes]
+        self._groups = [conduction.spaces.group_of(own.rows) for own in nodes]
         self.distortion = ThermalDistortion(tuple(np.zeros((count, n.count)) for n in nodes))
 
-    def add(self, body: int, columns: slice, per_rise: np.ndarray) -> None:
-        """Add the rows of a block from the weak gap per nodal rise of a body, (n_own, width)."""
-        adjoint, spaces = self._conduction.in_body(body).adjoint_response(per_rise), self._spaces
-        for own, nodes, rows in zip(
-            self._bodies, self._nodes, self.distortion.per_heat, strict=True
-        ):
-            if own == body:
-                at_face = adjoint[nodes.rows - spaces.starts[body]]
+    def add(self, group: int, columns: slice, per_rise: np.ndarray) -> None:
+        """Add the rows of a block from the weak gap per nodal rise of a group, (n_own, width)."""
+        adjoint, spaces = self._conduction.in_group(group).adjoint_response(per_rise), self._spaces
+        each = zip(self._groups, self._nodes, self.distortion.per_heat, strict=True)
+        for own, nodes, rows in each:
+            if own == group:
+                at_face = adjoint[spaces.within(group, nodes.rows)]
                 rows[columns] += np.vstack(spaces.comm.allgather(at_face)).T
-        if columns.stop == self._count:  # the body is done
+        if columns.stop == self._count:  # the group is done
             self._conduction.release()
 
     @property
@@ -258,6 +264,6 @@ def condense_distortion(
 ) -> ThermalDistortion:
     """Condense the thermal distortion; slopes as in `ThermalOpening`. Every rank calls."""
     rows = DistortionRows(conduction, nodes, opening.loads.shape[1])
-    for body, columns, per_rise in opening.by_columns(conduction.spaces, slopes):
-        rows.add(body, columns, per_rise)
+    for group, columns, per_rise in opening.by_columns(conduction.spaces, slopes):
+        rows.add(group, columns, per_rise)
     return rows.distortion

@@ -6,8 +6,6 @@ functions of the facet of one side at contact point j. All others of its cell va
 
 from __future__ import annotations
 
-from petsc4py import PETSc
-
 import basix
 import numpy as np
 import scipy.sparse as sp
@@ -75,13 +73,6 @@ def _vector_trace(spaces: Spaces, pairing: Pairing, directions: np.ndarray) -> s
     return result.tocsr()
 
 
-def distributed(spaces: Spaces, trace: sp.csr_matrix) -> PETSc.Mat:
-    """Transposed trace as a PETSc matrix, columns (points) distributed over the ranks too."""
-    csr = (trace.indptr.astype(PETSc.IntType), trace.indices.astype(PETSc.IntType), trace.data)
-    sizes = (spaces.owned, spaces.total), (PETSc.DECIDE, trace.shape[1])
-    return PETSc.Mat().createAIJ(sizes, csr=csr, comm=spaces.comm)
-
-
 def _local_values(space: fem.FunctionSpace, side: PairedFace):
     """Local nodes on the facets, points and basis values at the points whose cell this rank owns.
 
@@ -147,4 +138,4 @@ def gather_rows(spaces: Spaces, index: int, rows, columns, values, n_points: int
         rows, columns, values = (np.concatenate([part[k] for part in received]) for k in range(3))
     shape = (index_map.size_local * bs, n_points)
     own = sp.coo_matrix((values, (rows - first, columns)), shape=shape)
-    return spaces.placed(index, own.tocsr())
+    return spaces.placed(spaces.rows(index), own.tocsr())

@@ -55,6 +55,7 @@ class EnrichedBodies:
         bodies = elastic.bodies
         surplus = surplus_spaces(bodies, degree, bodies.dim)
         clamped, *guided = supports(system.model)
+        clamped = (*clamped, *elastic.joints.surfaces)  # the details at a joint are not resolved
         held = [
             fixed_values(body, elastic.kinematics, space, clamped, guided)
             for body, space in zip(bodies.each, surplus.each, strict=True)
@@ -122,9 +123,11 @@ def temperature_change(
         for trace, side in zip(face.traces, pairing.sides, strict=True)
     ]
     fluxes = zip(traces, temperatures.faces.flux, strict=True)
-    loads = sum(trace @ (face.weights * flux) for trace, flux in fluxes)
+    loads = np.sum([trace @ (face.weights * flux) for trace, flux in fluxes], axis=0)
+    nodal = loads[: conduction.spaces.owned]
+    nodal += conduction.joint_heat(temperatures.rise, nodal)
     before = problem.field(temperatures.rise)
-    change = problem.correction(problem.residual(before, np.asarray(loads)))
+    change = problem.correction(problem.residual(before, loads))
     uncoupled = np.array([sum_over_ranks(system.comm, trace.T @ change) for trace in traces])
     # the nodal space cannot represent the response to a flux that levels finer details
     weighted = scaled(face.weights, face.basis)
@@ -168,7 +171,8 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
     at_faces = zip(model.interface.faces, thermal.face.shifts, strict=True)
     shifts = {name: float(shift[0]) for name, shift in at_faces}
     bath = [transferring(body, kinematics, shifts) for body in bodies.each]
-    given, _ = given_rises(bodies, surplus, dict.fromkeys(heat.temperature, 0.0), None)
+    left_out = *heat.temperature, *conduction.joints.surfaces
+    given, _ = given_rises(bodies, surplus, dict.fromkeys(left_out, 0.0), None)
     return EnrichedProblem(
         conduction.spaces, surplus, terms, conduction.respond, (conduction.fixed, given), bath
     )

@@ -188,8 +188,8 @@ def _streamed(system: System, analysis: Analysis) -> str | None:
 def _iterations(system: System) -> dict[str, int]:
     """Largest numbers of multigrid iterations of a solution, if there are any."""
     thermal = system.thermal
-    solvers = {
-        "elasticity": [body.factor for body in system.elastic.each],
+    solvers: dict[str, list] = {
+        "elasticity": [group.factor for group in system.elastic.groups],
         "conduction": [] if thermal is None else [thermal.conduction.factor],
     }
     counted = {

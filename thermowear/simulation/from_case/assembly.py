@@ -10,6 +10,7 @@ from ...case.assembly.geometry import AssemblyGeometry
 from ...case.assembly.schema import AssemblyCase
 from ...case.assembly.tables import AssemblyContactTable, AssemblyHolderTable, BodyMotionTable
 from ...case.tables.schema import MeshTable
+from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh
 from ...laws.distribution import IN_PLACE, Distribution
 from ...model.body import Body
@@ -18,23 +19,28 @@ from ...model.face_wear import Wear
 from ...model.interface import Interface
 from ...model.model import Discretisation, Model, Zone
 from ...model.relative_motion import relative_motion
+from ...model.tie import Tie, glued_bodies, with_glued
 from .model import attributes, conductance, face_wear, material
 
 
 def assembly_of(case: AssemblyCase) -> Model:
     """Model of a validated case of several bodies."""
-    geometry = case.geometry
+    geometry, ties = case.geometry, _ties(case)
+    groups = glued_bodies(len(geometry.bodies), ties)
     return Model(
         kinematics=case.model,
         bodies=tuple(_body(case, name) for name in geometry.bodies),
-        interfaces=tuple(_interface(case, name, table) for name, table in case.contacts.items()),
-        holders=_holders(case),
+        interfaces=tuple(
+            _interface(case, name, table) for name, table in case.contacts.items() if not table.tie
+        ),
+        holders=_holders(case, groups),
         meshes=AssemblyMeshes(case.model, geometry, case.mesh, case),
         discretisation=Discretisation(case.mesh.degree, solver=case.mesh.solver),
         heat=None if case.heat is None else Heat(**attributes(Heat, case.heat)),
         thickness=geometry.thickness_factor if case.model.startswith("plane") else None,
         sector=geometry.sector,
         title=case.title,
+        ties=ties,
     )
 
 
@@ -142,9 +148,24 @@ def _wear(case: AssemblyCase, body: str, table: AssemblyContactTable) -> Wear:
     return face_wear(wear, table, track)
 
 
-def _holders(case: AssemblyCase) -> tuple[Holder, ...]:
+def _ties(case: AssemblyCase) -> tuple[Tie, ...]:
+    """Glued faces."""
+    found = []
+    for name, table in case.contacts.items():
+        if table.tie and table.between is not None:
+            bodies = [case.geometry.bodies.index(case.geometry.body_of(s)) for s in table.between]
+            h = table.conductance
+            if not isinstance(h, float | None):
+                raise CaseError(f"contacts.{name}.conductance: a joint needs a constant one")
+            found.append(Tie(table.between, (bodies[0], bodies[1]), name, h))
+    return tuple(found)
+
+
+def _holders(case: AssemblyCase, groups: list[tuple[int, ...]]) -> tuple[Holder, ...]:
     """Holders; pressures on surfaces are loads of the first one."""
     each = [_holder(case, name, table) for name, table in case.holders.items()]
+    for holder in each:
+        holder["bodies"] = with_glued(holder["bodies"], groups)
     pressures = [case.load.pressure, *({} for _ in each[1:])]
     return tuple(
         Holder(**holder, surface_pressures=given)

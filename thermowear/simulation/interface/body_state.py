@@ -117,16 +117,17 @@ def body_state(system: System, contact: ContactState) -> BodyState:
 def _force_error(system: System, contact: ContactState, displacement, loads, strained) -> float:
     """Relative error between support reactions and the forces of holders and contacts.
 
-    On each body the reactions must balance the contact along each rigid mode, and across them the
-    guides do; those on the bodies of a holder must equal its load along its free motions. Moments
-    of the contact act on each body at its own points. Relative to the sum of the magnitudes, for
-    translations of all forces. Where no force acts, as on hot bodies apart, reactions are the
-    rounding of the thermal forces ``strained`` (n_owned,), without their part that grows beyond
-    bounds towards ν = 0.5.
+    On each body supports and joints must balance the contact along each rigid mode, and across
+    them the guides do; those on the bodies of a holder must equal its load along its free motions.
+    Moments of the contact act on each body at its own points. Relative to the sum of the
+    magnitudes, for translations of all forces. Where no force acts, as on hot bodies apart,
+    reactions are the rounding of the thermal forces ``strained`` (n_owned,), without their part
+    that grows beyond bounds towards ν = 0.5.
     """
     rigid_modes = [*_with_rotations(system, contact), *((m, None) for m in _across(system))]
     nodes = system.elastic.nodes()
-    reactions = system.elastic.reactions(displacement, loads).reshape(nodes.shape)
+    reactions = system.elastic.reactions(displacement, loads)
+    reactions = (reactions + system.elastic.joint_forces(displacement, loads)).reshape(nodes.shape)
     owned = [system.elastic.owned_by(*body.parts) for body in system.model.bodies]
     errors, scales = np.zeros(len(rigid_modes)), np.zeros(len(rigid_modes))
     strained = system.elastic.compressibility() * strained.reshape(nodes.shape)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -25,6 +26,7 @@ from ...contact.search.contacts import Contacts
 from ...contact.search.face import gather_faces
 from ...contact.search.pairing import Pairing
 from ...contact.search.part_values import PartValues
+from ...contact.ties.joints import elastic_joints, glued_points
 from ...geometry.mesh.held import check_held, free_motions
 from ...geometry.mesh.mixed import AnyMesh
 from ...model.interface import Interface
@@ -89,10 +91,11 @@ def build(
     coupled = coupled_without_condensation(choice, len(contacts.weights))
     made_from = made_from.solved_by(choice.name, coupled)
     with phases("assemble elasticity"):
+        glued = parts.get("glued", made_from.mesh, lambda: _glued(model, comm, kinematics, bodies))
         elastic, trace = parts.get(
             "elasticity",
             made_from.elasticity,
-            lambda: elastic_system(model, kinematics, bodies, contacts, choice),
+            lambda: elastic_system(model, kinematics, bodies, contacts, choice, glued),
         )
     dead = dead_load(model.holders, elastic)
     driven = rigid_modes(
@@ -101,7 +104,7 @@ def build(
     thermal, heat = None, model.heat
     if heat is not None:
         partition = heat_partition(model, bodies, contacts)
-        at = contacts, elastic, basis, partition
+        at = contacts, glued, elastic, basis, partition
         thermal = parts.get(
             "conduction",
             made_from.conduction,
@@ -149,11 +152,13 @@ def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) ->
 def _check_held(model: Model, mesh: AnyMesh) -> None:
     """Reject a body that its supports leave free to move."""
     clamped, *guided = supports(model)
-    for body in model.bodies:
-        free = free_motions(mesh, body.parts, clamped, guided)
+    for group in model.groups:
+        bodies = [model.bodies[index] for index in group]
+        parts = tuple(part for body in bodies for part in body.parts)
+        free = free_motions(mesh, parts, clamped, guided)
         if model.kinematics == "axisymmetric":
             free = ["along z" for name in free if name == "along y"]
-        check_held(body.name, free)
+        check_held(" and ".join(body.name for body in bodies), free)
 
 
 def _paired(
@@ -184,12 +189,22 @@ def _paired_faces(
     return worn_contact_points(model, interface, kinematics, worn, *faces)
 
 
+def _glued(model: Model, comm, kinematics: Kinematics, bodies: Bodies) -> list[Pairing]:
+    """Opposite points of the glued faces."""
+    degree = model.discretisation.degree
+    return [
+        glued_points(*gather_faces(bodies, tie.faces), kinematics, degree, comm)
+        for tie in model.ties
+    ]
+
+
 def elastic_system(
     model: Model,
     kinematics: Kinematics,
     bodies: Bodies,
     contacts: Contacts,
     choice: SolverChoice,
+    glued: Sequence[Pairing] = (),
 ) -> tuple[Elasticity, sp.csr_matrix]:
     """Assemble the elastic bodies and set up their solver. Every rank calls.
 
@@ -207,7 +222,16 @@ def elastic_system(
     degree = model.discretisation.degree
     clamped, symmetric, rollers, mid_plane = supports(model)
     elastic = elasticity(
-        bodies, kinematics, degree, materials, clamped, symmetric, rollers, choice, mid_plane
+        bodies,
+        kinematics,
+        degree,
+        materials,
+        clamped,
+        symmetric,
+        rollers,
+        choice,
+        mid_plane,
+        joints=lambda spaces: elastic_joints(spaces, glued),
     )
     return elastic, gap_trace(elastic.spaces, contacts)
 

@@ -73,7 +73,7 @@ def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
     section = model.kinematics, model.thickness, model.sector
     supports = model.symmetry, *((b.fixed, b.rollers, b.mid_plane) for b in model.bodies)
     spaces = model.discretisation.degree, [one.pressure_degree for one in interfaces]
-    mesh = (section, supports, model.meshes, spaces, zone)
+    mesh = (section, supports, model.meshes, spaces, [tie.faces for tie in model.ties], zone)
     faces = [
         (
             one.faces,
@@ -96,4 +96,5 @@ def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
     }
     motions = [interface.motion for interface in interfaces]
     carried = motions if heat.advection == "resolved" else None
-    return CacheKeys(mesh, points, elasticity, (elasticity, conducting, heat, carried))
+    joints = [tie.conductance for tie in model.ties]
+    return CacheKeys(mesh, points, elasticity, (elasticity, conducting, heat, carried, joints))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,8 @@ from ...contact.operators.heat_exchange import FaceHeat, InterfaceHeat
 from ...contact.operators.pressure import Basis, functions_by_interface
 from ...contact.operators.traces import face_traces
 from ...contact.search.contacts import Contacts
+from ...contact.search.pairing import Pairing
+from ...contact.ties.joints import thermal_joints
 from ...errors import CaseError
 from ...model.conditions import Heat, Motion
 from ...model.model import Model
@@ -96,6 +99,7 @@ def thermal_system(
     model: Model,
     heat: Heat,
     contacts: Contacts,
+    glued: Sequence[Pairing],
     elastic: Elasticity,
     basis: Basis,
     partition: np.ndarray,
@@ -113,6 +117,7 @@ def thermal_system(
             name: temperature_at(value, 0.0) - heat.ambient
             for name, value in heat.temperature.items()
         }
+        conductances = [np.inf if h is None else h for h in (t.conductance for t in model.ties)]
         bath = bath_matrix(spaces, traces, contacts.weights, shifts)
         conducting = conduction(
             bodies,
@@ -124,6 +129,7 @@ def thermal_system(
             bath,
             _passage(model, heat),
             choice,
+            joints=thermal_joints(spaces, glued, conductances),
         )
         load = elastic.thermal_load(spaces)
         loads = thermal_loads(model, heat, bodies, kinematics, conducting)

@@ -15,7 +15,7 @@ __version__ = "0.1.0"
 
 _SCRIPTING = (
     *("Body", "Heat", "Holder", "Interface", "LoadHistory", "Material", "Model", "PowerWear"),
-    *("PressureConductance", "Rotation", "TimeHistory", "Translation"),
+    *("PressureConductance", "Rotation", "Tie", "TimeHistory", "Translation"),
 )
 _LAZY = {
     **{"run": "simulation", "Result": "results", "Case": "case", "sweep": "app.sweeping"},

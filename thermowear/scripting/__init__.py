@@ -10,9 +10,11 @@ from .conversion import (
     TimeHistory,
 )
 from .face_pair import FacePair
+from .face_tie import FaceTie
 from .holding import Rotation, SurfaceHolder, Translation
 from .march import MarchState
 from .scripted_model import ScriptedModel
 from .solution import ModelSolution, PointValues
 
 Body, Interface, Holder, Model = MeshBody, FacePair, SurfaceHolder, ScriptedModel
+Tie = FaceTie

@@ -18,7 +18,7 @@ from .body import BodySurface, MeshBody, require_surface
 from .conversion import by_surface, each_quantity, quantities
 
 _LOADS = {
-    "force": units.Force,
+    "force": units.LeastForce,
     "approach": units.Length,
     "tangential_force": units.SignedForce,
     "closing_moment": units.SignedMoment,

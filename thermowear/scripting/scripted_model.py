@@ -22,6 +22,7 @@ from ..model.conditions import Heat, Holder
 from ..model.interface import Interface
 from ..model.model import Discretisation, Model, Solver
 from ..model.relative_motion import relative_motion
+from ..model.tie import glued_bodies, with_glued
 from ..simulation.analyses.run import needs_single_solution, solve
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.building import build
@@ -31,6 +32,7 @@ from ..timer import Phases
 from .body import BodySurface, MeshBody
 from .conversion import number
 from .face_pair import FacePair
+from .face_tie import FaceTie
 from .holding import Rotation, SurfaceHolder, Translation
 from .march import MarchState, march
 from .solution import ModelSolution
@@ -65,12 +67,14 @@ class ScriptedModel:
         Linear solver of bodies in space: ``"auto"`` (by size), ``"direct"`` or ``"multigrid"``.
     symmetry : sequence of BodySurface
         Surfaces on planes of symmetry x = const.
+    ties : sequence of FaceTie
+        Glued faces.
     title : str
 
     Raises
     ------
     CaseError
-        If it has more bodies, interfaces or holders than are supported, or an argument is invalid.
+        If bodies, interfaces and holders do not fit together, or an argument is invalid.
     """
 
     interfaces: Sequence[FacePair]
@@ -82,6 +86,7 @@ class ScriptedModel:
     degree: int = 2
     solver: Solver = "auto"
     symmetry: Sequence[BodySurface] = ()
+    ties: Sequence[FaceTie] = ()
     title: str = ""
     _shared: dict[Any, Any] = field(default_factory=dict, repr=False)
 
@@ -93,7 +98,7 @@ class ScriptedModel:
                 raise CaseError("Model: an interface has both faces on the same body")
         if not any(holder.pressed for holder in self.holders):
             raise CaseError("Holder: needs one of force, approach and closing_moment")
-        touching = {face.body for pair in self.interfaces for face in pair.faces}
+        touching = {face.body for face in self._faces}
         apart = [body for body in (*self.bodies, *self.motions) if body not in touching]
         if apart:
             raise CaseError(f"Model: the body {apart[0].name!r} is at no interface")
@@ -108,8 +113,13 @@ class ScriptedModel:
     def bodies(self) -> tuple[MeshBody, ...]:
         """The bodies on holders, then the others."""
         held = [surface.body for holder in self.holders for surface in holder.surfaces]
-        faces = [face.body for pair in self.interfaces for face in pair.faces]
-        return tuple(dict.fromkeys([*held, *faces]))
+        return tuple(dict.fromkeys([*held, *(face.body for face in self._faces)]))
+
+    @property
+    def _faces(self) -> list[BodySurface]:
+        """Faces in contact, then the glued ones."""
+        pairs: list[FacePair | FaceTie] = [*self.interfaces, *self.ties]
+        return [face for pair in pairs for face in pair.faces]
 
     @property
     def _is_pair(self) -> bool:
@@ -229,6 +239,7 @@ class ScriptedModel:
             thickness=thickness,
             symmetry=tuple(surface.name for surface in self.symmetry),
             title=self.title,
+            ties=tuple(tie.in_model(self.bodies) for tie in self.ties),
         )
         _check_surfaces(model, meshes.tagged.surfaces)
         return model
@@ -249,6 +260,8 @@ class ScriptedModel:
 
     def _holder(self, holder: SurfaceHolder, dim: int) -> Holder:
         found = holder.in_model(dim, self.bodies)
+        groups = glued_bodies(len(self.bodies), [tie.in_model(self.bodies) for tie in self.ties])
+        found = replace(found, bodies=with_glued(found.bodies, groups))
         return replace(found, name="") if self._is_pair else found
 
 
@@ -257,16 +270,20 @@ def _check_surfaces(model: Model, known: Sequence[str]) -> None:
     heat = model.heat or Heat()
     supports = [n for b in model.bodies for n in (*b.fixed, *b.rollers, *b.mid_plane)]
     loads = [n for h in model.holders for n in (*h.surface_forces, *h.surface_pressures)]
-    faces = [name for interface in model.interfaces for name in interface.faces]
+    faces = [
+        *(n for i in model.interfaces for n in i.faces),
+        *(n for t in model.ties for n in t.faces),
+    ]
+    glued = {index for tie in model.ties for index in tie.bodies}
     thermal = *heat.cooling, *heat.temperature, *heat.flux, *heat.power
     for name in (*faces, *supports, *loads, *thermal, *model.symmetry):
         if name not in known:
             body, _, tag = name.rpartition(":")
             raise CaseError(f"Model: facets with the tag {tag} do not bound the body {body!r}")
-    for held in model.bodies:
+    for index, held in enumerate(model.bodies):
         if held.mid_plane and model.kinematics != "3d":
             raise CaseError(f"Body {held.name!r}: mid_plane requires a mesh in space")
-        if not (held.fixed or held.rollers or held.mid_plane):
+        if not (held.fixed or held.rollers or held.mid_plane or index in glued):
             raise CaseError(f"Body {held.name!r}: is neither on a holder nor fixed")
 
 

@@ -9,6 +9,10 @@ _history, _heat, _loads, _cycles = (
     table_of(kind).columns for kind in (HistoryRow, HeatRow, LoadRow, CycleRow)
 )
 OTHER = "Other"
+_WORN_THROUGH = {
+    "time": ("time_1_s", "time_2_s"),
+    "sliding distance": ("distance_1_m", "distance_2_m"),
+}
 
 GROUPS: dict[str, tuple[Quantity, ...]] = {
     "Loads and forces": (
@@ -49,6 +53,24 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
         from_key("wear_dissipation_W", "wear dissipation power"),
         _history["wear_volume_1"],
         _history["wear_volume_2"],
+        *(
+            from_key(
+                f"layer_volumes_{body}_m3",
+                f"worn volumes of the layers, body {body}",
+                "mm³",
+                "from the surface down, the substrate last",
+            )
+            for body in (1, 2)
+        ),
+        *(
+            from_key(
+                f"worn_through_{name}",
+                f"{what} at which the coating is first worn through, body {name[-3]}",
+                meaning="first point that has lost all layers",
+            )
+            for what, names in _WORN_THROUGH.items()
+            for name in names
+        ),
         from_key(
             "wear_coefficient_per", meaning="of each body or part: friction-stress or pressure"
         ),

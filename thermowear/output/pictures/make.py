@@ -21,8 +21,15 @@ _ALONG_A_LINE: dict[str, Callable[[Path], None]] = {
     "interface": curves.draw_interface,
     "profile": curves.draw_profile,
     "wear": curves.draw_wear,
+    "coating": curves.draw_coating,
 }
-_OVER_A_SURFACE = {"interface": maps.draw_interface_maps, "wear": maps.draw_wear_maps}
+_OVER_A_SURFACE = {
+    "interface": maps.draw_interface_maps,
+    "wear": maps.draw_wear_maps,
+    "coating": maps.draw_coating_maps,
+}
+_OF_THE_INTERFACE = ("wear", "coating")
+"""Pictures drawn from ``interface.csv`` that have no table of their own."""
 _OTHERS = {
     "history": curves.draw_history,
     "heat": curves.draw_heat,
@@ -60,7 +67,7 @@ def make_pictures(folder: Path) -> list[str]:
     first = _OVER_A_SURFACE if maps.is_surface(folder) else _ALONG_A_LINE
     for name, draw in (first | _OTHERS).items():
         try:
-            if name == "wear" or (folder / f"{name}.csv").is_file():
+            if name in _OF_THE_INTERFACE or (folder / f"{name}.csv").is_file():
                 draw(folder)
         except MissingColumnError as reason:
             notes.append(f"{folder}: no {name}.png, as {reason}")

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.tri import Triangulation
 
 from .. import tables
-from .curves import final_time, interface_panels, worn_bodies
+from .curves import coated_bodies, final_time, interface_panels, worn_bodies
 from .panels import MAP_STYLE, color_map, label_coordinates, panels
 
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
@@ -43,6 +43,15 @@ def draw_wear_maps(folder: Path) -> None:
     names = worn_bodies(data)
     if end is not None and names:
         _draw(folder / "wear.png", data, names, f"wear after {end:.4g} s")
+
+
+def draw_coating_maps(folder: Path) -> None:
+    """Draw ``coating.png``: what is left of the coatings at the end of a transient analysis."""
+    end = final_time(folder)
+    data = tables.read(folder / "interface.csv")
+    names = coated_bodies(data)
+    if end is not None and names:
+        _draw(folder / "coating.png", data, names, f"coating after {end:.4g} s")
 
 
 def _draw(path: Path, data: tables.TableColumns, names: list[str], title: str = "") -> None:

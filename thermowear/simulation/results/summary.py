@@ -9,6 +9,7 @@ from ...laws.coefficients import Constant
 from ...results import Result
 from ..system.rigid_modes import applied, guides
 from ..system.system import System
+from .coatings import layer_volumes
 from .recording import Snapshot, profile
 
 _GUIDES = {
@@ -74,6 +75,7 @@ def summarise(end: Snapshot, time: float) -> dict:
         "wear_dissipation_W": float(w @ (p * rates)),
         "wear_volume_1_m3": float(volumes[0]),
         "wear_volume_2_m3": float(volumes[1]),
+        **layer_volumes(system, depths, volumes),
         "wear_coefficient_per": {
             name: per
             for index, wear in model.interface.wear.items()

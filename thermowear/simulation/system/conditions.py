@@ -111,7 +111,8 @@ class ConditionModel:
         self.depends_on_state, self._friction_varies = interface.varies, interface.friction_varies
         self._load, self._motion = model.holder.history, model.motion.history
         self._courses = model.histories
-        self.constant = not self.depends_on_state and not self._courses
+        depths = any("depth" in law.variables for law in system.laws.values())
+        self.constant = not self.depends_on_state and not self._courses and not depths
 
     def at(
         self,

@@ -226,6 +226,14 @@ class System:
         with self.phases("condense elasticity"):
             return self.influence.condensed(self.traction, self.holder)
 
+    def worn_through(self) -> System:
+        """System of faces that have lost all their layers."""
+        if not self.model.interface.coated:
+            return self
+        return replace(
+            self, model=replace(self.model, interfaces=(self.model.interface.worn_through,))
+        )
+
     def with_friction(self, friction: np.ndarray) -> System:
         """System with given coefficients of friction (n,) in place of the nominal one."""
         if self.slides is None or np.all(friction == self.friction):

@@ -2,7 +2,7 @@
 
 Each point wears by the law of the layer that its own worn depth has reached, ``d' = r_i`` in layer
 i. As long as the rates r_i are constant, the depth is a piecewise linear function of time whose
-kinks are known: a layer takes the time of its remaining thickness over its rate. `Passage`
+kinks are known: a layer takes the time of its remaining thickness over its rate. `LayerPassage`
 evaluates it, so that no event has to be located and a point that passes a border within a time
 step reaches its exact depth. If the laws differ by a coefficient only, ``r_i = k_i f(p, v, …)``,
 the depth is a function of the dose ``∫ f dt`` alone, whatever the pressure does in that time, and
@@ -82,7 +82,7 @@ class LayeredWear:
         layer, *each = np.broadcast_arrays(self.reached(np.asarray(at.depth)), *values)
         return np.take_along_axis(np.stack(each), layer[None], axis=0)[0]
 
-    def passage(self, depth: np.ndarray, rates: np.ndarray, time: float) -> Passage:
+    def passage(self, depth: np.ndarray, rates: np.ndarray, time: float) -> LayerPassage:
         """Wear through the layers at constant rates.
 
         Parameters
@@ -106,11 +106,11 @@ class LayeredWear:
             gained[layer] = np.where(needed > left, left * rate, thick)
             last[ends] = rate[ends]
             left = left - spent[layer]
-        return Passage(spent, gained, rates, last)
+        return LayerPassage(spent, gained, rates, last)
 
 
 @dataclass(frozen=True)
-class Passage:
+class LayerPassage:
     """Wear of points through the layers in a time with constant rates.
 
     Attributes

@@ -155,7 +155,7 @@ class CompositeWear:
 
     @property
     def worn_through(self) -> CompositeWear:
-        """The same wear, as there are no layers."""
+        """Wear without layers: the same, as it has none."""
         return self
 
     @property

@@ -9,10 +9,6 @@ _history, _heat, _loads, _cycles = (
     table_of(kind).columns for kind in (HistoryRow, HeatRow, LoadRow, CycleRow)
 )
 OTHER = "Other"
-_WORN_THROUGH = {
-    "time": ("time_1_s", "time_2_s"),
-    "sliding distance": ("distance_1_m", "distance_2_m"),
-}
 
 GROUPS: dict[str, tuple[Quantity, ...]] = {
     "Loads and forces": (
@@ -64,12 +60,14 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
         ),
         *(
             from_key(
-                f"worn_through_{name}",
-                f"{what} at which the coating is first worn through, body {name[-3]}",
-                meaning="first point that has lost all layers",
+                f"worn_through_{key}",
+                f"{what} at which the first point has lost its coating, body {body}",
             )
-            for what, names in _WORN_THROUGH.items()
-            for name in names
+            for body in (1, 2)
+            for what, key in (
+                ("time", f"time_{body}_s"),
+                ("sliding distance", f"distance_{body}_m"),
+            )
         ),
         from_key(
             "wear_coefficient_per", meaning="of each body or part: friction-stress or pressure"

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...laws.interfaces import Law
-from ...laws.layered_wear import Passage, layers_of
+from ...laws.layered_wear import LayerPassage, layers_of
 from .implicit_step import Slope, WearRates
 
 
@@ -52,13 +52,13 @@ class LayeredStep:
         return self.rates.linearised(pressure, self._terms(pressure))
 
     def _terms(self, pressure: np.ndarray) -> Iterator[tuple[int, Law, np.ndarray | float]]:
-        """Wearing body, law and part of the time step of each layer, see `Passage.by_rate`."""
+        """Wearing body, law and part of the time step of each layer, see `LayerPassage.by_rate`."""
         for row, law in enumerate(self.rates.laws):
             parts = self._passage(row, pressure).by_rate / self.rates.step
             for layer, part in zip(layers_of(law).laws, parts, strict=True):
                 yield row, layer, part
 
-    def _passage(self, row: int, pressure: np.ndarray) -> Passage:
+    def _passage(self, row: int, pressure: np.ndarray) -> LayerPassage:
         layers = layers_of(self.rates.laws[row])
         rates = np.array([self.rates.by(law, row, pressure) for law in layers.laws])
         return layers.passage(self.before[row], rates, self.rates.step)

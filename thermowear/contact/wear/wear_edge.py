@@ -1,5 +1,7 @@
 """Pressure space of a contact that grows by wear: pointwise at the edge of the worn zone.
 
+Where a layer is worn through, the pressure has such a jump at the edge of the next one.
+
 The pressure of a worn contact has a jump at its edge, which travels through the elements. In an
 element that it crosses, weak contact has two errors: the open gap beyond the edge contributes to
 the means that close the gap before it, so that too much is worn there; and the best approximation
@@ -193,8 +195,7 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     share = (~points @ contact.weighted) / contact.weighted.sum(axis=0)
     cut = (share > _ZERO) & (share < 1.0 - _ZERO)
     whole = np.flatnonzero(share >= 1.0 - _ZERO)
-    single = np.zeros((len(points), np.count_nonzero(points)))
-    single[points] = np.eye(single.shape[1])
+    single = _single_points(points, weights, contact.basis)
     split = np.hstack([np.where(points[:, None], 0.0, dense(contact.basis[:, cut])), single])
     projection = contact.projected(split)
     left = split - contact.basis @ projection
@@ -212,6 +213,21 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
         modes=weighted.T @ holder.modes,
         force_modes=weighted.T @ holder.force_modes,
     )
+
+
+def _single_points(points: np.ndarray, weights: np.ndarray, basis: Basis) -> np.ndarray:
+    """Functions of single points, shape (n, k).
+
+    A point without area, as on the axis of symmetry, has the pressure of the nearest one.
+    """
+    single = np.zeros((len(points), np.count_nonzero(points)))
+    single[points] = np.eye(single.shape[1])
+    bare = points & (weights <= _ZERO * weights.max())
+    if bare.any() and not bare[points].all():
+        others = np.flatnonzero(points & ~bare)
+        distances = dense(basis[bare])[:, None] - dense(basis[others])
+        single[bare] = single[others[np.abs(distances).sum(axis=2).argmin(axis=1)]]
+    return single
 
 
 def shortest_compliance(contact: CondensedContact) -> np.ndarray:

@@ -43,7 +43,7 @@ class InterfaceProblem(WearProblem):
         self._condition_model = ConditionModel(system)
         self._last_conditions: tuple[bytes, InterfaceConditions] | None = None
         self._wear = InterfaceWear(system)
-        self._edge, area = GrowingEdge(system, method), float(system.weights.sum())
+        self._edge, area = GrowingEdge(system, method, self._wear), float(system.weights.sum())
         self._gap, n = system.pairing.gap - system.holder.imposed, len(system.weights)
         self._softness, self._rigid = np.full(n, system.softness), Slope.diagonal(np.zeros(n))
         self._unworn = np.zeros((self._wear.count, n))
@@ -130,15 +130,14 @@ class InterfaceProblem(WearProblem):
         return replace(guess, contact=contact, stored=heat.stored)
 
     def begin(self, state: InterfaceState) -> InterfaceState:
-        reached = np.any(state.worn > 0.0, axis=0)
-        if not reached.any() or state.contact.warm_start is None:
+        if not np.any(state.worn > 0.0) or state.contact.warm_start is None:
             return state
         if state.pointwise is None:
             depth = state.worn.sum(axis=0)[state.pressure > 0.0]
             # pointwise contact once the edge of the contact is that of the wear: once the wear
             # depth is steeper than the deflection, in the mean over the contact
-            uniform = reached.all() or not depth.size
-            if uniform or np.ptp(depth) <= self._method.deflection_range(state.contact):
+            inside = self._edge.partial_zones(state.worn) and depth.size
+            if not inside or np.ptp(depth) <= self._method.deflection_range(state.contact):
                 return state
         edge = self._edge.points(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)

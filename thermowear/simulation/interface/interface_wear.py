@@ -10,6 +10,9 @@ from ...laws.layered_wear import layers_of
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 
+_LEVEL = 1e-3
+"""Largest variation of the depth, relative to it, of points that pass a border at once."""
+
 
 class InterfaceWear:
     """Wear of the faces by their laws and distributions.
@@ -52,6 +55,18 @@ class InterfaceWear:
         """Wear rates of faces that have lost all their layers."""
         substrates = [layers.substrate for layers in self._layers]
         return WearRates(substrates, self._spreads, conditions.wear, conditions.states)
+
+    def below_layers(self, worn: np.ndarray) -> list[np.ndarray]:
+        """Points below the lower border of each layer, shape (n,) each.
+
+        A border that all points pass nearly at once is left out.
+        """
+        return [
+            depth >= border
+            for layers, depth in zip(self._layers, worn, strict=True)
+            for border in layers.borders[:-1]
+            if depth.min() < (1 - _LEVEL) * border
+        ]
 
     def is_final(self, worn: np.ndarray, points: np.ndarray) -> bool:
         """True if the faces have lost all their layers at points selected by a mask (n,)."""

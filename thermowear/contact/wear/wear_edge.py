@@ -144,7 +144,7 @@ class EdgeSpace(PressureSpace):
     Attributes
     ----------
     points : ndarray of bool, shape (n,)
-        Points with pointwise pressures.
+        Points with pointwise pressures of their own; those without area have that of the nearest.
     projection : ndarray, shape (m, k)
         Coefficients in Ψ of their projections, which load the bodies.
     local_compliance : ndarray, shape (k, k)
@@ -195,7 +195,8 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     share = (~points @ contact.weighted) / contact.weighted.sum(axis=0)
     cut = (share > _ZERO) & (share < 1.0 - _ZERO)
     whole = np.flatnonzero(share >= 1.0 - _ZERO)
-    single = _single_points(points, weights, contact.basis)
+    own_area = points & (weights > _ZERO * weights.max())
+    single = _single_points(points, own_area, contact.basis)
     split = np.hstack([np.where(points[:, None], 0.0, dense(contact.basis[:, cut])), single])
     projection = contact.projected(split)
     left = split - contact.basis @ projection
@@ -205,7 +206,7 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     yielding = (weights * shortest_compliance(contact))[:, None] * left
     own[len(whole) :, len(whole) :] = left.T @ yielding
     return EdgeSpace(
-        points=points,
+        points=own_area,
         basis=basis,
         weighted=weighted,
         projection=np.hstack([np.eye(len(share))[:, whole], projection]),
@@ -215,18 +216,17 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     )
 
 
-def _single_points(points: np.ndarray, weights: np.ndarray, basis: Basis) -> np.ndarray:
-    """Functions of single points, shape (n, k).
+def _single_points(points: np.ndarray, own: np.ndarray, basis: Basis) -> np.ndarray:
+    """Functions of the points with an area of their own, shape (n, k).
 
-    A point without area, as on the axis of symmetry, has the pressure of the nearest one.
+    The others, as on the axis of symmetry, have the pressure of the nearest of them.
     """
-    single = np.zeros((len(points), np.count_nonzero(points)))
-    single[points] = np.eye(single.shape[1])
-    bare = points & (weights <= _ZERO * weights.max())
-    if bare.any() and not bare[points].all():
-        others = np.flatnonzero(points & ~bare)
-        distances = dense(basis[bare])[:, None] - dense(basis[others])
-        single[bare] = single[others[np.abs(distances).sum(axis=2).argmin(axis=1)]]
+    single = np.zeros((len(points), np.count_nonzero(own)))
+    single[own] = np.eye(single.shape[1])
+    bare = points & ~own
+    if bare.any():
+        distances = np.abs(dense(basis[bare])[:, None] - dense(basis[own])).sum(axis=2)
+        single[bare] = single[own][distances.argmin(axis=1)]
     return single
 
 

@@ -15,7 +15,7 @@ CRATER = "ball crater of rigid bodies: V_c = π h (a² - R h), V_s = π b⁴/4R"
 THICKNESS, COEFFICIENTS = (5e-6, 2e-6), (2e-15, 4e-15, 8e-14)
 """Layers of the flat face [m], and wear coefficients with that of the substrate [1/Pa]."""
 PRESSURE, SPEED = 5e6, 0.1
-"""Of the flat face [Pa, m/s]."""
+"""Pressure [Pa] and sliding speed [m/s] of the flat face."""
 AREA = 1e-4
 """Area of the flat face [m²]."""
 RATES = tuple(k * PRESSURE * SPEED for k in COEFFICIENTS)

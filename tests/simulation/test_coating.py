@@ -44,7 +44,7 @@ def test_flat_face(update):
     left = [state.coating_left_1.max() for state in result.outputs.values()]
     assert left == pytest.approx([4.5e-6, 2e-6, 1.2e-6, 0.0], rel=1e-9, abs=1e-15)
     assert np.isnan(result.interface.coating_left_2).all()
-    assert result.summary.get("geometry_updates", 0) == (0 if update == "never" else 9)
+    assert (result.summary.get("geometry_updates", 0) > 0) == (update != "never")
     assert max(row.error for row in result.history) < 1e-6
 
 
@@ -86,8 +86,8 @@ def test_ball_on_moved_meshes():
     """
     requirement: layers are measured by the whole depth of each point, wherever the mesh is.
     """
-    fixed, moved = (SHORT.run(*COARSE, f"wear.update={size}") for size in ("never", "0.00003"))
-    assert moved.summary["geometry_updates"] > 10
+    fixed, moved = (SHORT.run(*COARSE, f"wear.update={size}") for size in ("never", "0.0002"))
+    assert moved.summary["geometry_updates"] > 5
     volumes = [result.summary["layer_volumes_1_m3"] for result in (fixed, moved)]
     assert volumes[1] == pytest.approx(volumes[0], rel=2e-3, abs=0.0)
     assert sum(volumes[1]) == pytest.approx(moved.summary["wear_volume_1_m3"], rel=1e-12, abs=0.0)
@@ -116,7 +116,7 @@ def ramped(tolerance):
                 },
             }
         },
-        "load.history": {"time": ["0 s", f"{RAMP} s"], "factor": [1.0, 2.0]},
+        "load": {"history": {"time": ["0 s", f"{RAMP} s"], "force": ["500 N", "1 kN"]}},
         "analysis": {"type": "transient", "end_time": f"{RAMP} s", "tolerance": tolerance},
     }
     result = solved("stacked-blocks", changes, "mesh.degree=2", "mesh.elements=2")
@@ -125,7 +125,7 @@ def ramped(tolerance):
     substrate = k2 * SPEED * PRESSURE**b * RAMP * (2 ** (b + 1) - x ** (b + 1)) / (b + 1)
     exact, time = 5e-6 + substrate, (x - 1) * RAMP
     found = result.interface.wear_1
-    assert result.summary["worn_through_time_1_s"] == pytest.approx(time, rel=20 * tolerance)
+    assert result.summary["worn_through_time_1_s"] == pytest.approx(time, rel=2e-2)
     return len(result.history), float(np.abs(found / exact - 1).max())
 
 
@@ -133,10 +133,10 @@ def test_errors_of_the_steps_at_a_kink():
     """
     requirement: the error stays near the tolerance of a step, for laws of different exponents, too.
     """
-    for tolerance in (1e-2, 1e-4, 1e-6):
+    for tolerance in (1e-2, 1e-4, 1e-5, 1e-6):
         steps, error = ramped(tolerance)
-        assert error < 3 * tolerance
-        assert steps < 60
+        assert error < 1.5 * tolerance
+        assert steps < 20
 
 
 def test_the_steady_state_is_that_of_the_substrate():
@@ -178,22 +178,23 @@ def test_running_in_to_the_steady_state():
     short = flat_face(f"analysis={{type='transient', end_time='{0.9 * LIFE} s'}}")
     assert short.summary["distance_from_steady"] is None
     assert short.summary["worn_through_time_1_s"] is None
-    assert not short.interface.coating_left_1.min() == 0.0
+    assert short.interface.coating_left_1.min() > 0.0
 
 
 def test_hot_ring():
     """
-    requirement: a coated ring runs in to the steady state of its substrate, with friction heat.
+    requirement: a coated ring runs in to the state that its substrate runs in to, with heat.
     """
-    changes = {
-        "wear.punch.layers": {"thickness": ["20 um"], "coefficient": ["4e-8 1/MPa"]},
-        "analysis": {"type": "transient", "until": "steady", "steady_tolerance": 1e-3},
-    }
-    found = solved("annular-punch", changes, "mesh.degree=4")
-    known = solved("annular-punch", {}, "mesh.degree=4")
+    until = {"analysis": {"type": "transient", "until": "steady", "steady_tolerance": 1e-4}}
+    layers = {"thickness": ["4 um"], "coefficient": ["4e-8 1/MPa"]}
+    coated = until | {"wear.punch.layers": layers}
+    found, known = (solved("annular-punch", c, "mesh.degree=3") for c in (coated, until))
     largest = known.interface.pressure.max()
-    assert found.interface.pressure == pytest.approx(known.interface.pressure, abs=2e-3 * largest)
+    assert found.interface.pressure == pytest.approx(known.interface.pressure, abs=4e-4 * largest)
+    shape = known.interface.shape
+    assert found.interface.shape == pytest.approx(shape, abs=5e-3 * np.ptp(shape))
     assert found.interface.coating_left_1.max() == 0.0
+    assert found.summary["worn_through_time_1_s"] < found.summary["time_s"]
     assert found.summary["heat_balance_relative_error"] < 1e-9
 
 

@@ -17,7 +17,7 @@ from ..heat.friction_heat import FrictionHeat
 from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
-from ..results.coatings import layers, times_worn_through
+from ..results.coatings import WearingState, layers, times_since_worn_through
 from ..results.recording import Snapshot, snapshot_at
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
@@ -189,14 +189,17 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def _note_lost_layers(self, conditions, moment: Moment, slid: float, row: HistoryRow) -> None:
         """Keep the time and the sliding distance at which a face first lost all its layers."""
-        system, begin = self.loop.now.system, moment.time - moment.step
-        times = times_worn_through(system, conditions, moment.state, moment.time)
-        for index, time in times.items():
-            if index not in self._lost:
-                time = max(time, begin)
-                left = (moment.time - time) / moment.step if moment.step > 0.0 else 0.0
-                lost = time, row.sliding_distance - left * slid
-                self._lost = self._lost | {index: lost}
+        now, known = self.loop.now, self._lost
+        if not now.system.model.interface.coated or known.keys() >= layers(now.system).keys():
+            return
+        end, begin, last = WearingState(moment.state, conditions), None, self._last
+        if last is not None and last.state.worn.shape == moment.state.worn.shape:
+            begin = WearingState(last.state, now.problem.conditions(last.state, last.time))
+        times = times_since_worn_through(now.system, end, begin, moment.step)
+        self._lost = {
+            index: (moment.time - time, row.sliding_distance - slid * time / moment.step)
+            for index, time in times.items()
+        } | known
 
     def _hottest(self, state: InterfaceState) -> float:
         """Highest temperature of both faces [K]; NaN without heat."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ...contact.wear.implicit_step import WearRates
@@ -45,32 +47,50 @@ def layer_volumes(system: System, worn: np.ndarray, volumes: np.ndarray) -> dict
     return found
 
 
-def times_worn_through(
-    system: System, conditions: InterfaceConditions, state: InterfaceState, time: float
-) -> dict[int, float]:
-    """Times at which the first points of the faces have lost all their layers, by body index [s].
+@dataclass(frozen=True)
+class WearingState:
+    """State of the interface under its conditions."""
 
-    Follows from the depth below the layers at the present rate of the substrate: exact at constant
-    rates, otherwise as accurate as the time step. Bodies that have not are left out.
+    state: InterfaceState
+    conditions: InterfaceConditions
+
+
+def times_since_worn_through(
+    system: System, now: WearingState, before: WearingState | None, step: float
+) -> dict[int, float]:
+    """Times since the first points of the faces have lost all layers, by body index [s].
+
+    Follow from the depth below the layers at the rate of the substrate, which is taken to change
+    linearly in the step, or to be that of its end if the beginning is not known. Bodies that have
+    not lost their layers at any point are left out.
 
     Parameters
     ----------
     system : System
-    conditions : InterfaceConditions
-    state : InterfaceState
-        State at the end of the time step in which it happens.
-    time : float
-        End of that step [s].
+    now : WearingState
+        At the end of the time step.
+    before : WearingState or None
+        At its beginning.
+    step : float
+        [s]
     """
-    laws, spreads = list(system.laws.values()), list(system.spreads.values())
-    rates = WearRates(laws, spreads, conditions.wear, conditions.states)
     found = {}
     for row, index in enumerate(system.laws):
-        each = layers_of(laws[row])
-        below = state.worn[row] - each.total
-        passed = below >= 0.0
-        if each.thickness and passed.any():
-            rate = rates.by(each.substrate, row, state.pressure)[passed]
-            since = below[passed] / np.where(rate > 0.0, rate, np.inf)
-            found[index] = time - float(since.max())
+        each = layers_of(system.laws[index])
+        below = now.state.worn[row] - each.total
+        if each.thickness and step > 0.0 and np.any(below >= 0.0):
+            end = _substrate_rate(system, now, row)
+            begin = end if before is None else _substrate_rate(system, before, row)
+            # r_end t - (r_end - r_begin) t²/2 step = depth below the layers
+            root = np.sqrt(np.maximum(end**2 - 2 * (end - begin) * below / step, 0.0))
+            since = np.zeros_like(below)
+            np.divide(2 * below, end + root, out=since, where=(below > 0.0) & (end > 0.0))
+            found[index] = min(float(since.max()), step)
     return found
+
+
+def _substrate_rate(system: System, at: WearingState, row: int) -> np.ndarray:
+    """Wear rate of the substrate of a wearing body, shape (n,) [m/s]."""
+    laws, spreads, conditions = list(system.laws.values()), system.spreads, at.conditions
+    rates = WearRates(laws, list(spreads.values()), conditions.wear, conditions.states)
+    return rates.by(layers_of(laws[row]).substrate, row, at.state.pressure)

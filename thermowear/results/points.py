@@ -11,7 +11,7 @@ from .quantity import as_in, column, table
     "interface",
     "Contact at the end",
     "one row per contact point: position, area, pressure, gap, shape, wear depths and rates, "
-    "coating left, temperatures, heat fluxes",
+    "temperatures, heat fluxes, coating left",
     at_times=True,
 )
 class InterfaceFields:
@@ -35,16 +35,16 @@ class InterfaceFields:
     wear_2: np.ndarray = column("wear depth, body 2", "m", "µm")
     wear_rate_1: np.ndarray = column("wear rate, body 1", "m/s", "nm/s")
     wear_rate_2: np.ndarray = column("wear rate, body 2", "m/s", "nm/s")
-    coating_left_1: np.ndarray = column(
-        "coating left, body 1", "m", "µm", "thickness of all layers; nan without layers"
-    )
-    coating_left_2: np.ndarray = column(
-        "coating left, body 2", "m", "µm", "thickness of all layers; nan without layers"
-    )
     temperature_1: np.ndarray = column("temperature, body 1", "K", "°C")
     temperature_2: np.ndarray = column("temperature, body 2", "K", "°C")
     heat_flux_1: np.ndarray = column("heat flux, body 1", "W/m²", "kW/m²", "into the body")
     heat_flux_2: np.ndarray = column("heat flux, body 2", "W/m²", "kW/m²", "into the body")
+    coating_left_1: np.ndarray = column(
+        "coating left, body 1", "m", "µm", "of all layers; only of coated faces", optional=True
+    )
+    coating_left_2: np.ndarray = column(
+        "coating left, body 2", "m", "µm", "of all layers; only of coated faces", optional=True
+    )
 
 
 @table(

@@ -31,6 +31,7 @@ HERE = Path(__file__).resolve().parent
 CHOICES = (
     ("bodies",),
     ("mode", "heat", "track", "cycles", "wear", "friction", "profile", "interface"),
+    ("coating",),
 )
 SIDES = (
     1100,

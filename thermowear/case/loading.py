@@ -177,7 +177,7 @@ def _value(given: str, text: str) -> Any:
 def _message(fault: Any, kind: type[Section]) -> str:
     """Message of one fault: the key's path, the value found, the values allowed."""
     location = fault["loc"]
-    if location[0] == "analysis":
+    if location[:1] == ("analysis",):
         location = (*location[:1], *location[2:])  # pydantic puts the type of analysis second
     path = ".".join(map(str, location))
     if fault["type"] == "union_tag_not_found":
@@ -186,7 +186,8 @@ def _message(fault: Any, kind: type[Section]) -> str:
         return f"{path}.type: found {quoted(fault['input']['type'])}; must be one of {_ANALYSES}"
     if fault["type"] == "value_error":
         error = fault["ctx"]["error"]
-        return f"{path}.{error.key}: {error}" if isinstance(error, KeyFault) else f"{path}: {error}"
+        key = [error.key] if isinstance(error, KeyFault) else []
+        return f"{'.'.join([*filter(None, [path]), *key])}: {error}"
     if fault["type"] == "extra_forbidden":
         return f"{path}: unknown key{_suggestion(location, kind)}"
     message = _MESSAGES.get(fault["type"], fault["msg"]).format(**fault.get("ctx", {}))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -158,6 +158,16 @@ class Interface:
             or bool(self.friction_law.variables)
             or any(wear.varies for wear in self.wear.values())
         )
+
+    @property
+    def coated(self) -> bool:
+        """True if a face has layers."""
+        return any(wear.has_layers for wear in self.wear.values())
+
+    @property
+    def worn_through(self) -> Interface:
+        """Interface of faces that have lost all their layers."""
+        return replace(self, wear={index: own.worn_through for index, own in self.wear.items()})
 
     @property
     def wearing_in_place(self) -> dict[int, float]:

@@ -175,6 +175,16 @@ class Model:
         """Sliding of body 1 of a pair over body 2."""
         return self.interface.motion
 
+    @property
+    def coated(self) -> bool:
+        """True if a face has layers."""
+        return any(interface.coated for interface in self.interfaces)
+
+    @property
+    def worn_through(self) -> Model:
+        """Model of faces that have lost all their layers."""
+        return replace(self, interfaces=tuple(one.worn_through for one in self.interfaces))
+
     def faster(self, factor: float) -> Model:
         """Model with all sliding faster by a factor."""
         moved = [replace(one, motion=one.motion.faster(factor)) for one in self.interfaces]

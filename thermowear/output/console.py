@@ -226,6 +226,14 @@ def _highlights(summary: dict):
     if max(summary.get(f"wear_volume_{side}_m3", 0.0) for side in (1, 2)) > 0:
         volumes = (value for body in (1, 2) for _, value in row(f"wear_volume_{body}_m3", 5))
         yield "worn volume, body 1 and 2", " and ".join(volumes)
+    for body in (1, 2):
+        distance = summary.get(f"worn_through_distance_{body}_m")
+        yield from row(
+            f"worn_through_time_{body}_s",
+            5,
+            f"coating worn through, body {body}",
+            more="" if distance is None else f", {distance:.5g} m",
+        )
     for which, label in (("", ""), ("_with_wear", " with wear")):
         if exists(f"critical_speed_factor{which}"):
             yield f"critical speed{label}", _critical(summary, which)

@@ -21,6 +21,7 @@ PICTURES = {
     "interface": "Pressure, temperatures and shape of the worn face along the contact.",
     "profile": "Worn shape.",
     "wear": "Pressure and wear depth along the contact at the output times and at the end.",
+    "coating": "Thickness left of the coatings at the output times and at the end.",
     "track": "Wear depths of both bodies along x, body 1 in the middle of its stroke.",
     "history": "Largest pressure and worn volume over time.",
     "heat": "Surface temperatures of both bodies, friction power and largest pressure over time.",
@@ -31,7 +32,7 @@ PICTURES = {
 }
 """Pictures of a run with their captions, in the order of the report."""
 
-_BY_CONTACT = "interface", "profile", "wear"
+_BY_CONTACT = "interface", "profile", "wear", "coating"
 """Pictures by contact in a model of several bodies."""
 _AT = "_at_"
 """Between the name of a contact and the output time in the names of files."""

@@ -86,8 +86,11 @@ def read(path: Path) -> TableColumns:
 
 
 def write_points(path: Path, points) -> None:
-    """Write points, such as `thermowear.results.InterfaceFields`, one per row."""
-    table = table_of(points)
+    """Write points, such as `thermowear.results.InterfaceFields`, one per row.
+
+    Optional columns without values are left out.
+    """
+    table = table_of(points).given(points)
     _write_table(path, table, zip(*table.values(points), strict=True))
 
 

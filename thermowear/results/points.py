@@ -14,13 +14,14 @@ from .quantity import as_in, column, table, table_of
     "interface",
     "Contact at the end",
     "one row per contact point: position, area, pressure, gap, shape, wear depths and rates, "
-    "temperatures, heat fluxes",
+    "temperatures, heat fluxes, coating left",
     at_times=True,
 )
 class InterfaceFields:
     """State of the interface, one entry per contact point.
 
-    Without ``[heat]`` temperatures and fluxes are NaN. Temperatures are absolute.
+    Without ``[heat]`` temperatures and fluxes are NaN, without layers what is left of them.
+    Temperatures are absolute.
     """
 
     x: np.ndarray = column("x", "m", "mm", "r in axisymmetric models")
@@ -41,6 +42,12 @@ class InterfaceFields:
     temperature_2: np.ndarray = column("temperature, body 2", "K", "°C")
     heat_flux_1: np.ndarray = column("heat flux, body 1", "W/m²", "kW/m²", "into the body")
     heat_flux_2: np.ndarray = column("heat flux, body 2", "W/m²", "kW/m²", "into the body")
+    coating_left_1: np.ndarray = column(
+        "coating left, body 1", "m", "µm", "of all layers; only of coated faces", optional=True
+    )
+    coating_left_2: np.ndarray = column(
+        "coating left, body 2", "m", "µm", "of all layers; only of coated faces", optional=True
+    )
 
 
 @table(

@@ -3,6 +3,7 @@
 from .body import BodySurface, MeshBody
 from .conversion import (
     Heat,
+    LayeredWear,
     LoadHistory,
     Material,
     PowerWear,

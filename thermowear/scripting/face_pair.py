@@ -135,8 +135,8 @@ def _body_wear(given: Any, body: MeshBody) -> Wear:
             known = ", ".join(map(str, body.part_of_tag)) or "none, the body has one material"
             raise CaseError(f"{where}: unknown cell tag {tag!r}; known: {known}")
         wear = _face_wear(law, f"{where}, tag {tag}")
-        if not wear.in_place:
-            raise CaseError(f"{where}, tag {tag}: must wear in place")
+        if not wear.in_place or wear.has_layers:
+            raise CaseError(f"{where}, tag {tag}: must wear in place, without layers")
         parts[body.part_of_tag[tag]] = wear
     return CompositeWear(parts)
 

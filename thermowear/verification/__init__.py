@@ -19,6 +19,7 @@ from .cases.steady.minimality import minimality
 from .cases.steady.ring_in_space import ring_3d, ring_3d_whole
 from .cases.steady.special_cases import SPECIAL_CASES
 from .cases.wear.beam_shakedown import beam_shakedown
+from .cases.wear.coating import coating
 from .cases.wear.composite_face import composite_face
 from .cases.wear.geometry_updates import block_on_ring, deep_wear, pin_on_disc
 from .cases.wear.growing import growing_cylinder, growing_sphere
@@ -32,7 +33,7 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     deep_wear, beam_shakedown, fretting_wear, fretting_cylinder, fuel_fretting,
     reciprocating, moving_band, two_slabs, pressure_conductance, temperature_dependent,
     minimality, step_flux, braking_stop, sliding_rod, half_plane_instability, optimal_shape,
-    ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face,
+    ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face, coating,
 ), ())  # fmt: skip
 CASES = {
     id: identified(id, case, *runs)

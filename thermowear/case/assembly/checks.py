@@ -134,6 +134,8 @@ def _wear(case: AssemblyCase) -> Iterator[Fault]:
     for name, law in case.wear.items():
         if law.spread == "track" and name not in case.geometry.rings:
             yield f"wear.{name}.spread", "is for rings that pass under a sector (geometry.rings)"
+        if law.layers is not None:
+            yield f"wear.{name}.layers", "not supported in a model of several bodies"
         if law.materials:
             yield f"wear.{name}.materials", "not supported in a model of several bodies"
         for joint, contact in case.contacts.items():

@@ -174,6 +174,7 @@ class Case(Section):
             not isinstance(conductance, float | None)
             or bool(self.friction_variables)
             or any(law.factor.depends_on or law.follows_state for law in self.wear.laws.values())
+            or any(law.follows_state for own in self.wear.values() for law in own.of_layers)
         )
 
     def tagged_mesh(self, zone: tuple[float, float] | None = None):

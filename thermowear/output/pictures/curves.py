@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -64,25 +65,53 @@ def draw_interface(folder: Path, contact: str = "") -> None:
         from_zero(axes[0])
 
 
+def coated_bodies(data: tables.TableColumns) -> list[str]:
+    """Columns of what is left of the coatings; empty without any, and in earlier results."""
+    names = ("coating_left_1", "coating_left_2")
+    return [name for name in names if name in data and np.isfinite(data[name]).any()]
+
+
 def draw_wear(folder: Path, contact: str = "") -> None:
     """Draw ``wear.png``: pressure and wear depth along the contact at the output times."""
+    found = _at_output_times(folder, contact)
+    bodies = worn_bodies(found[max(found)]) if found else []
+    if bodies:
+        shown = ["pressure", *bodies] if len(found) > 1 else bodies
+        _draw_states(folder / picture("wear", contact), found, shown, downwards=bodies)
+
+
+def draw_coating(folder: Path, contact: str = "") -> None:
+    """Draw ``coating.png``: what is left of the coatings at the output times."""
+    found = _at_output_times(folder, contact)
+    bodies = coated_bodies(found[max(found)]) if found else []
+    if bodies:
+        _draw_states(folder / picture("coating", contact), found, bodies)
+
+
+def _at_output_times(folder: Path, contact: str) -> dict[float, tables.TableColumns]:
+    """Contact points at the output times and at the end; empty for a run without time."""
     end = final_time(folder)
     if end is None:
-        return
+        return {}
     last = {end: folder / name_at("interface", None, contact)}
     files = last | states(folder, "interface", contact)
-    found = {time: tables.read(files[time]) for time in sorted(files)}
+    return {time: tables.read(files[time]) for time in sorted(files)}
+
+
+def _draw_states(
+    path: Path,
+    found: dict[float, tables.TableColumns],
+    shown: list[str],
+    downwards: Sequence[str] = (),
+) -> None:
+    """Draw columns along the contact at several times, some of them downwards."""
     final = found[max(found)]
-    bodies = worn_bodies(final)
-    if not bodies:
-        return
-    shown = ["pressure", *bodies] if len(found) > 1 else bodies
-    with column(folder / picture("wear", contact), len(shown), 3.0) as axes:
+    with column(path, len(shown), 3.0) as axes:
         for axis, name in zip(axes, shown, strict=True):
             for (time, data), color in zip(found.items(), time_colors(len(found)), strict=True):
                 plot_along(axis, data, name, color=color, label=f"{time:.4g} s")
             axis.set_ylabel(final.quantities[name].axis)
-            if name != "pressure":
+            if name in downwards:
                 axis.invert_yaxis()
         time_legend(axes[0])
 

@@ -21,11 +21,15 @@ _ALONG_A_LINE: dict[str, Callable[..., None]] = {
     "interface": curves.draw_interface,
     "profile": curves.draw_profile,
     "wear": curves.draw_wear,
+    "coating": curves.draw_coating,
 }
 _OVER_A_SURFACE: dict[str, Callable[..., None]] = {
     "interface": maps.draw_interface_maps,
     "wear": maps.draw_wear_maps,
+    "coating": maps.draw_coating_maps,
 }
+_OF_THE_INTERFACE = ("wear", "coating")
+"""Pictures drawn from ``interface.csv`` that have no table of their own."""
 _OTHERS: dict[str, Callable[..., None]] = {
     "history": curves.draw_history,
     "heat": curves.draw_heat,
@@ -64,7 +68,7 @@ def make_pictures(folder: Path) -> list[str]:
     each = [(name, draw, (contact,)) for contact in contacts for name, draw in first.items()]
     for name, draw, contact in [*each, *((name, draw, ()) for name, draw in _OTHERS.items())]:
         try:
-            if name == "wear" or (folder / name_at(name, None, *contact)).is_file():
+            if name in _OF_THE_INTERFACE or (folder / name_at(name, None, *contact)).is_file():
                 draw(folder, *contact)
         except MissingColumnError as reason:
             notes.append(f"{folder}: no {picture(name, *contact)}, as {reason}")

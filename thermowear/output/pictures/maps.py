@@ -12,7 +12,7 @@ from matplotlib.tri import Triangulation
 
 from .. import tables
 from ..files import contacts_of, name_at, picture
-from .curves import final_time, interface_panels, worn_bodies
+from .curves import coated_bodies, final_time, interface_panels, worn_bodies
 from .panels import MAP_STYLE, color_map, label_coordinates, panels
 
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
@@ -48,6 +48,15 @@ def draw_wear_maps(folder: Path, contact: str = "") -> None:
     names = worn_bodies(data)
     if end is not None and names:
         _draw(folder / picture("wear", contact), data, names, f"wear after {end:.4g} s")
+
+
+def draw_coating_maps(folder: Path, contact: str = "") -> None:
+    """Draw ``coating.png``: what is left of the coatings at the end of a transient analysis."""
+    end = final_time(folder)
+    data = tables.read(folder / name_at("interface", None, contact))
+    names = coated_bodies(data)
+    if end is not None and names:
+        _draw(folder / picture("coating", contact), data, names, f"coating after {end:.4g} s")
 
 
 def _draw(path: Path, data: tables.TableColumns, names: list[str], title: str = "") -> None:

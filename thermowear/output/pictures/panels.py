@@ -39,6 +39,7 @@ COLORS = {
     "pressure": "viridis",
     "shape": "cividis",
     "wear": "magma_r",
+    "coating_left": "cividis",
 }
 SMALL_CONTACT = 0.15
 """Size of a contact relative to the bodies, below which it gets its own window."""

@@ -12,7 +12,6 @@ from numpy.linalg import LinAlgError
 
 from ...balances import judged
 from ...bulk.multigrid_solver import MultigridSolver
-from ...contact.operators.pressure import jumps
 from ...errors import CaseError, ComputationError
 from ...model.analyses import (
     Analysis,
@@ -37,9 +36,9 @@ from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
 from .positioning import prepare
 from .static import initial, stability, steady
 from .transient import TransientHistory
+from .wearing_faces import wearing_faces
 
 _UNPAIRED = 1e-6
-_CYCLIC = "fretting", "reciprocating"
 _OF_SEVERAL = "initial", "steady", "transient"
 
 
@@ -122,11 +121,7 @@ def analyse(
             f"a {analysis.type} analysis is for two bodies with one interface; for several bodies "
             f"there are: {', '.join(_OF_SEVERAL)}"
         )
-    if analysis.type in _CYCLIC and jumps(system.pairing):
-        raise CaseError(
-            f"a {analysis.type} analysis does not support contact faces of several materials that "
-            "wear by different laws"
-        )
+    system = wearing_faces(system, analysis, observer)
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:
             observer.note(note)

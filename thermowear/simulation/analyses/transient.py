@@ -17,6 +17,7 @@ from ..heat.friction_heat import FrictionHeat
 from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
+from ..results.coatings import WearingState, layers, times_since_worn_through
 from ..results.recording import Snapshot, snapshot_at
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
@@ -37,14 +38,15 @@ def _principle(settings: TransientAnalysis, system: System) -> SteadyState | Non
     """Steady state that a transient analysis approaches; None if there is none.
 
     There is none unless all holder modes are free, for a growing contact, for inputs given over
-    time, for wear laws that depend on the depth, or if the principle has no solution.
+    time, for wear laws that depend on the depth, or if the principle has no solution. Faces with
+    layers approach that of their substrates.
     """
     free, grows = system.holder.free, any(ends_outside_zone(system))
     if not (len(free) and free.all()) or (grows and settings.until is None):
         return None
     if system.model.histories or not system.laws:
         return None
-    if any("depth" in law.variables for law in system.laws.values()):
+    if any("depth" in law.variables for law in system.worn_through().laws.values()):
         return None
     try:
         return steady_state(system)
@@ -71,16 +73,18 @@ class TransientHistory(AnalysisHistory[Moment]):
         sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
         self.loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
         self._speed = 0.0
+        self._lost: dict[int, tuple[float, float]] = {}
         self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
 
     def restart_data(self) -> tuple:
-        """Mean sliding speed [m/s], and data of the outer loop and of nonlinear heat."""
+        """Mean sliding speed [m/s], data of the outer loop and of nonlinear heat, lost layers."""
         heat = self.loop.now.problem.heat
         own = None if heat is None else heat.steps.restart_data()
-        return self._speed, self.loop.restart_data(), own
+        return self._speed, self.loop.restart_data(), own, self._lost
 
     def restore(self, data: tuple) -> None:
-        self._speed, loop, own = data
+        self._speed, loop, own, *lost = data  # checkpoints of earlier versions have no layers
+        self._lost = dict(lost[0]) if lost else {}
         self.loop.restore(loop)
         if self.loop.now.problem.heat is not None and own is not None:
             self.loop.now.problem.heat.steps.restore(own)
@@ -92,6 +96,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         slid = state.step * (self._speed + speed) / 2  # steps end at kinks of the speed
         self._speed = speed
         row = self._row(state, slid)
+        self._note_lost_layers(conditions, state, slid, row)
         if problem.heat is None or not problem.stores_heat:
             return [row]
         heat = self._heat_row(state, conditions, problem.heat)
@@ -130,7 +135,8 @@ class TransientHistory(AnalysisHistory[Moment]):
         result = {
             "steps": len(rows) - 1,
             "time_s": rows[-1].time,
-            "distance_from_steady": None if steady is None else self.last.distance,
+            "distance_from_steady": None if np.isnan(self.last.distance) else self.last.distance,
+            **self._lost_layers(),
             **loop.summary(),
             **wear_velocity(loop.now.system, None if steady is None else steady.wear.velocity),
         }
@@ -144,6 +150,15 @@ class TransientHistory(AnalysisHistory[Moment]):
             "peak_temperature_K": peak.max_temperature,
             "peak_temperature_time_s": peak.time,
         }
+
+    def _lost_layers(self) -> dict[str, float | None]:
+        """Time and distance at which each coated face first lost all layers; None if not yet."""
+        found = {}
+        for index in layers(self.loop.now.system):
+            time, distance = self._lost.get(index, (None, None))
+            found[f"worn_through_time_{index + 1}_s"] = time
+            found[f"worn_through_distance_{index + 1}_m"] = distance
+        return found
 
     def _runs_away(self) -> bool:
         """True if the faces heat up much faster than before (thermal runaway)."""
@@ -171,6 +186,20 @@ class TransientHistory(AnalysisHistory[Moment]):
             step=moment.step,
             error=moment.error,
         )
+
+    def _note_lost_layers(self, conditions, moment: Moment, slid: float, row: HistoryRow) -> None:
+        """Keep the time and the sliding distance at which a face first lost all its layers."""
+        now, known = self.loop.now, self._lost
+        if not now.system.model.coated or known.keys() >= layers(now.system).keys():
+            return
+        end, begin, last = WearingState(moment.state, conditions), None, self._last
+        if last is not None and last.state.worn.shape == moment.state.worn.shape:
+            begin = WearingState(last.state, now.problem.conditions(last.state, last.time))
+        times = times_since_worn_through(now.system, end, begin, moment.step)
+        self._lost = {
+            index: (moment.time - time, row.sliding_distance - slid * time / moment.step)
+            for index, time in times.items()
+        } | known
 
     def _hottest(self, state: InterfaceState) -> float:
         """Highest temperature of both faces [K]; NaN without heat."""

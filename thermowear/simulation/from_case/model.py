@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 import numpy as np
@@ -20,13 +20,15 @@ from ...case.tables.tabulated import (
     TemperatureHistory,
     TemperatureTable,
 )
-from ...case.tables.wear import BodyWearTable, RateTable
+from ...case.tables.wear import BodyWearTable
+from ...case.tables.wear_rate import RateTable
 from ...case.values.section import Section
 from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh
 from ...laws.coefficients import Multipliers
 from ...laws.distribution import IN_PLACE, Distribution, InPlace
 from ...laws.interfaces import Law
+from ...laws.layered_wear import LayeredWear
 from ...laws.power_wear import PowerWear
 from ...model.body import Body, Material
 from ...model.conditions import Heat, Holder, Motion
@@ -229,12 +231,21 @@ def _wear(case: Case) -> dict[int, Wear]:
 def _body_wear(case: Case, name: str, wear: BodyWearTable) -> Wear:
     """Wear of a body by one law, or by those of its parts; the others have the body's own."""
     if not wear.materials:
-        return face_wear(wear, case.contact, _track(case, wear))
+        return _layered(case, wear)
     parts = case.geometry.parts_of(name)
     found = dict.fromkeys(parts, face_wear(wear, case.contact)) if wear.has_law else {}
     own = {case.part_named(name, key): law for key, law in wear.materials.items()}
     found |= {part: face_wear(law, case.contact) for part, law in own.items() if part is not None}
     return CompositeWear(found)
+
+
+def _layered(case: Case, wear: BodyWearTable) -> FaceWear:
+    """Wear of a face by one law, or by those of its layers and of the substrate below them."""
+    substrate = face_wear(wear, case.contact, _track(case, wear))
+    if wear.layers is None:
+        return substrate
+    laws = (*(face_wear(layer, case.contact).law for layer in wear.of_layers), substrate.law)
+    return replace(substrate, law=LayeredWear(wear.layers.thickness, laws))
 
 
 def face_wear(

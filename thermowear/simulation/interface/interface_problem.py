@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
+from ...contact.wear.implicit_step import Slope, newton_with_wear
 from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat, friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
@@ -17,6 +17,7 @@ from .contact_solver import ContactSolution, ContactSolver
 from .fixed_point import Trial, self_consistent
 from .full_method import FullMethod
 from .growing_edge import GrowingEdge
+from .interface_wear import InterfaceWear
 from .pointwise_method import PointwiseMethod
 from .sdirk import InterfaceState, WearProblem
 from .steady import SteadyState
@@ -41,11 +42,11 @@ class InterfaceProblem(WearProblem):
         self.system, self._method, self.heat = system, method, heat
         self._condition_model = ConditionModel(system)
         self._last_conditions: tuple[bytes, InterfaceConditions] | None = None
-        self._laws, self._spreads = list(system.laws.values()), list(system.spreads.values())
-        self._edge = GrowingEdge(system, method)
+        self._wear = InterfaceWear(system)
+        self._edge = GrowingEdge(system, method, self._wear)
         self._gap, n = system.contacts.gap - system.holder.imposed, len(system.weights)
         self._softness, self._rigid = system.softness, Slope.diagonal(np.zeros(n))
-        self._unworn = np.zeros((len(self._laws), n))
+        self._unworn = np.zeros((self._wear.count, n))
         self._guess = ContactSolution(np.full(n, system.mean_pressure), np.zeros(0), None)
         self.stores_heat = system.model.heat is not None and system.model.heat.transient
 
@@ -128,15 +129,14 @@ class InterfaceProblem(WearProblem):
         return replace(guess, contact=contact, stored=heat.stored)
 
     def begin(self, state: InterfaceState) -> InterfaceState:
-        reached = np.any(state.worn > 0.0, axis=0)
-        if not reached.any() or state.contact.warm_start is None:
+        if not np.any(state.worn > 0.0) or state.contact.warm_start is None:
             return state
         if state.pointwise is None:
             depth = state.worn.sum(axis=0)[state.pressure > 0.0]
             # pointwise contact once the edge of the contact is that of the wear: once the wear
             # depth is steeper than the deflection, in the mean over the contact
-            uniform = reached.all() or not depth.size
-            if uniform or np.ptp(depth) <= self._method.deflection_range(state.contact):
+            inside = self._edge.partial_zones(state.worn) and depth.size
+            if not inside or np.ptp(depth) <= self._method.deflection_range(state.contact):
                 return state
         edge = self._edge.points(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)
@@ -161,8 +161,8 @@ class InterfaceProblem(WearProblem):
             nonlocal found
             found = self._solve(before.worn, conditions, heat, edge, found, step)
             faces = heat.faces(conditions, found.pressure) if heat is not None and faced else None
-            worn = before.worn + step * self._rates(conditions)(found.pressure)
-            return InterfaceState(worn, found, before.peak, faces, pointwise=edge)
+            grown = self._wear.in_step(before.worn, conditions, step).depths(found.pressure)
+            return InterfaceState(before.worn + grown, found, before.peak, faces, pointwise=edge)
 
         if model.depends_on_state:
             closed = guess.pressure > 0
@@ -176,6 +176,13 @@ class InterfaceProblem(WearProblem):
         stored = self.heat.steps.end(before.stored, step, heat, state.faces, made)
         return replace(state, stored=stored)
 
+    def prolonged(self, before: InterfaceState, after: InterfaceState, part, step, time):
+        found = before.towards(after, part)
+        if self._wear.layered:
+            wear = self._wear.in_step(before.worn, self.conditions(after, time), part * step)
+            found = replace(found, worn=before.worn + wear.depths(after.pressure))
+        return found
+
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
         """Interface conditions in a state at a time [s]; constant ones are kept."""
         model, closed = self._condition_model, state.pressure > 0
@@ -185,10 +192,6 @@ class InterfaceProblem(WearProblem):
         found = model.at(time, state.pressure, state.faces, closed, state.worn)
         self._last_conditions = key, found
         return found
-
-    def _rates(self, conditions: InterfaceConditions, step: float = 1.0) -> WearRates:
-        """Wear rates under given conditions, for wear in a time step [s]."""
-        return WearRates(self._laws, self._spreads, conditions.wear, conditions.states, step)
 
     def _solve(
         self,
@@ -214,10 +217,10 @@ class InterfaceProblem(WearProblem):
             return self._method.solve(gap + opened, softened, last, conditions, heat, pointwise)
 
         start = None if guess is None or guess.warm_start is None else guess
-        if step == 0.0 or not self._laws:
+        if step == 0.0 or self._wear.count == 0:
             return solve(self._rigid.point, self._rigid, start)
         start = start or solve(self._rigid.point, self._rigid, None)
-        return newton_with_wear(solve, self._rates(conditions, step), start)
+        return newton_with_wear(solve, self._wear.in_step(worn, conditions, step), start)
 
     def contact_state(self, state: InterfaceState, time: float) -> ContactState:
         """Contact loads of a state on the bodies; every rank calls."""
@@ -235,16 +238,11 @@ class InterfaceProblem(WearProblem):
             return super().difference(before, one, other)
         return self._edge.difference(before, one, other)
 
-    def edge_steps(
-        self,
-        states: tuple[InterfaceState, InterfaceState, InterfaceState],
-        step: float,
-        time: float,
-    ) -> tuple[float, float]:
+    def edge_steps(self, states, step: float, time: float) -> tuple[float, float]:
         last = states[2]
         if last.pointwise is None:
             return super().edge_steps(states, step, time)
-        return self._edge.steps(states, step, self._rates(self.conditions(last, time)))
+        return self._edge.steps(states, step, self._wear.rates(self.conditions(last, time)))
 
     def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
         """Largest difference of temperatures inside the bodies [K]; every rank calls."""
@@ -258,7 +256,7 @@ class InterfaceProblem(WearProblem):
     def first_step(self, state: InterfaceState) -> float:
         """Initial step: wear small against elastic deflection, small penetration of heat [s]."""
         conditions = self.conditions(state, 0.0)
-        fastest = float(self._rates(conditions)(state.pressure).sum(axis=0).max(initial=0.0))
+        fastest = float(self._wear.rates(conditions).value(state.pressure).max(initial=0.0))
         step = np.inf
         if fastest > 0.0:
             step = 1e-3 * self._method.largest_deflection(state.contact) / fastest
@@ -269,12 +267,12 @@ class InterfaceProblem(WearProblem):
 
     def steady(self, steady: SteadyState) -> np.ndarray:
         """Steady pressure of the discrete interface, the limit of its running-in [Pa]."""
-        conditions = steady.contact.conditions
-        return self._method.steady(steady.wear.pressure, self._rates(conditions), conditions)
+        final = self._wear.final_rates(steady.contact.conditions)
+        return self._method.steady(steady.wear.pressure, final, steady.contact.conditions)
 
     def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
-        """Largest difference to a steady pressure, relative to its maximum; NaN without one."""
-        if steady is None:
+        """Relative difference to a steady pressure; NaN without one, or with layers left on."""
+        if steady is None or not self._wear.is_final(state.worn, steady > 0.0):
             return float("nan")
         return float(np.abs(state.pressure - steady).max() / steady.max())
 

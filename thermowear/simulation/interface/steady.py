@@ -36,13 +36,15 @@ class SteadyState:
 def steady_state(system: System) -> SteadyState:
     """Steady pressure, wear rates and rigid-body wear velocity of a system. Every rank calls.
 
-    State-dependent friction, wear or conductance are resolved by fixed-point iteration.
+    State-dependent friction, wear or conductance are resolved by fixed-point iteration. Faces with
+    layers have lost them: wear that goes on for ever ends in the substrate.
 
     Raises
     ------
     ComputationError
         If there is no steady state, or the fixed-point iteration does not converge.
     """
+    system = system.worn_through()
     heat = friction_heat(system)
     uniform = np.full(len(system.weights), system.mean_pressure)
     zeros = np.zeros((len(system.laws), len(uniform)))

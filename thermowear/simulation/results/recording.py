@@ -30,6 +30,7 @@ from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
 from ..system.system import System
 from .cell_grids import GRIDS, divisions
+from .coatings import coating_left
 
 _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
 _LEAST_COSINE = 0.05
@@ -134,6 +135,7 @@ def record(
         T1, T2 = bodies.temperatures.faces.rise
         temperatures = (T1 + system.thermal.ambient, T2 + system.thermal.ambient)
         fluxes = bodies.temperatures.faces.flux
+    left = coating_left(system, worn)
     interface = InterfaceFields(
         x=points[:, 0],
         y=points[:, 1],
@@ -147,6 +149,8 @@ def record(
         wear_2=worn[1],
         wear_rate_1=rates[0],
         wear_rate_2=rates[1],
+        coating_left_1=left[0],
+        coating_left_2=left[1],
         temperature_1=temperatures[0],
         temperature_2=temperatures[1],
         heat_flux_1=fluxes[0],

@@ -16,6 +16,7 @@ from ...model.model import Model
 from ...results import Result
 from ..system.rigid_modes import applied, guides
 from ..system.system import System
+from .coatings import layer_volumes
 from .recording import Snapshot, profile
 
 _GUIDES = {
@@ -95,8 +96,8 @@ def _of_interface(end: Snapshot, index: int) -> dict:
     friction = sliding * at.friction[own] * p
     rates = (fields.wear_rate_1 + fields.wear_rate_2)[own]
     worn = p > 0
-    depths = np.array([fields.wear_1, fields.wear_2]) - system.moved
-    volumes = (system.worn_areas * depths)[:, own].sum(axis=1) + system.lost
+    depths = np.array([fields.wear_1, fields.wear_2])
+    volumes = (system.worn_areas * (depths - system.moved))[:, own].sum(axis=1) + system.lost
     constant = isinstance(interface.friction, Constant)
     return {
         "friction": interface.nominal_friction if constant else None,
@@ -114,6 +115,7 @@ def _of_interface(end: Snapshot, index: int) -> dict:
         "wear_dissipation_W": float(w @ (p * rates)),
         "wear_volume_1_m3": float(volumes[0]),
         "wear_volume_2_m3": float(volumes[1]),
+        **layer_volumes(system, depths, volumes),
         "wear_coefficient_per": {
             name: per
             for side, wear in interface.wear.items()

@@ -114,7 +114,8 @@ class ConditionModel:
         self._interfaces = list(zip(model.interfaces, system.contacts.ranges, strict=True))
         self.depends_on_state = any(interface.varies for interface in model.interfaces)
         self._courses = model.histories
-        self.constant = not self.depends_on_state and not self._courses
+        depths = any("depth" in law.variables for law in system.laws.values())
+        self.constant = not self.depends_on_state and not self._courses and not depths
 
     def at(
         self,

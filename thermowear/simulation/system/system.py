@@ -114,10 +114,8 @@ class System:
     @property
     def ranges_by_name(self) -> dict[str, slice]:
         """Ranges of the contact points by the names of the interfaces; empty for a pair."""
-        if self.model.is_pair:
-            return {}
-        pairs = zip(self.model.interfaces, self.contacts.ranges, strict=True)
-        return {interface.name: points for interface, points in pairs}
+        names = [] if self.model.is_pair else [one.name for one in self.model.interfaces]
+        return dict(zip(names, self.contacts.ranges, strict=False))
 
     @cached_property
     def weights(self) -> np.ndarray:
@@ -264,6 +262,10 @@ class System:
         """Elasticity condensed to the pressure space."""
         with self.phases("condense elasticity"):
             return self.influence.condensed(self.traction, self.holder)
+
+    def worn_through(self) -> System:
+        """System of faces that have lost all their layers."""
+        return replace(self, model=self.model.worn_through) if self.model.coated else self
 
     def with_friction(self, friction: np.ndarray) -> System:
         """System with given coefficients of friction (n,) in place of the nominal one."""

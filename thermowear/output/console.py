@@ -9,6 +9,7 @@ from math import pi
 from typing import Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from ..balances import BALANCES, holds
@@ -125,7 +126,7 @@ def _side_by_side(kind: str, parts: dict[str, dict[str, Any]]) -> Table:
     """Main numbers of the contacts, holders or bodies of a model, a row for each of them."""
     keys = [k for k in _OF_PARTS[kind] if any(part.get(k) for part in parts.values())]
     quantities = [of_key(key) for key in keys]
-    table = _table(kind, *(f"{q.label} [{q.unit}]" for q in quantities))
+    table = _table(kind, *(escape(f"{q.label} [{q.unit}]") for q in quantities))
     for name, part in parts.items():
         values = zip(quantities, (part.get(key) for key in keys), strict=True)
         table.add_row(name, *("" if v is None else f"{q.drawn(v):.5g}" for q, v in values))

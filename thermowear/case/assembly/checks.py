@@ -5,12 +5,15 @@ Every check yields the path of the key at fault and a message.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 from ...errors import CaseError
 from ..values.section import Fault
 from .schema import AssemblyCase
 
+_NAME, _AT = re.compile(r"[\w-]+"), "_at_"
+"""Names of contacts are parts of file names; a time follows the latter."""
 _ON_SURFACES = ("cooling", "temperature", "flux", "power")
 
 
@@ -75,6 +78,8 @@ def _contacts(case: AssemblyCase) -> Iterator[Fault]:
     if not case.contacts:
         yield "contacts", "missing; needs the faces that touch: [contacts.NAME] between = [...]"
     for name, contact in case.contacts.items():
+        if not _NAME.fullmatch(name) or _AT in name or _is_number(name):
+            yield f"contacts.{name}", "the name must consist of letters, digits, - and _"
         one, other = contact.between or ("", "")
         if geometry.body_of(one) == geometry.body_of(other):
             yield f"contacts.{name}.between", "both faces belong to the same body"
@@ -86,6 +91,14 @@ def _contacts(case: AssemblyCase) -> Iterator[Fault]:
     for body in geometry.bodies:
         if case.contacts and body not in reached:
             yield "contacts", f"the body {body!r} touches no other one"
+
+
+def _is_number(name: str) -> bool:
+    try:
+        float(name)
+    except ValueError:
+        return False
+    return True
 
 
 def _holders(case: AssemblyCase) -> Iterator[Fault]:

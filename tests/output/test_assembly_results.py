@@ -123,3 +123,26 @@ def test_names_of_contacts(name):
     with pytest.raises(tw.CaseError, match=r"^contacts\.") as error:
         tw.load(tomllib.loads(text))
     assert "name" in str(error.value)
+
+
+def test_commands_for_several_bodies(tmp_path, capsys):
+    """
+    requirement: a sweep lists the numbers of each part; what is for pairs only is refused.
+    """
+    case = tmp_path / "case.toml"
+    case.write_text(starter_text(TWO_PADS), encoding="utf-8")
+    over = ("--over", "motions.disk.angular_velocity=1 rad/s,2 rad/s")
+    words = ["sweep", str(case), *COARSE, *over, "-o", str(tmp_path / "sweep"), "--processes=1"]
+    assert main(words) == 0
+    head, one, two = (tmp_path / "sweep/sweep.csv").read_text("utf-8").splitlines()
+    columns = dict(
+        zip(head.split(","), zip(one.split(","), two.split(","), strict=True), strict=True)
+    )
+    power = [float(value) for value in columns["contacts.left.friction_power_W"]]
+    assert power[1] == pytest.approx(2 * power[0], rel=1e-9)
+    assert not (tmp_path / "sweep/shapes.png").exists()
+    capsys.readouterr()
+    assert main(["shape", str(case), "-o", str(tmp_path / "shape.csv")]) == 1
+    assert "is for cases of two bodies" in capsys.readouterr().err
+    with pytest.raises(tw.CaseError, match=r"^analysis\.frames: not supported"):
+        tw.load(case, tuple(word[6:] for word in TIMES) + ("analysis.frames=3",))

@@ -129,10 +129,11 @@ def test_an_insulating_joint():
     """requirement: without conductance no heat passes; the bodies are still solved together."""
     bodies, joined, _ = stack("triangle", True)
     known = bodies, 2, joined, [0.0], CONDUCTIVITIES, {"upper_high_y": HOT, "lower_low_y": 0.0}
-    conducting, _ = glued_conduction(*known)
-    rise = conducting.solve(np.zeros(conducting.spaces.owned))
+    conducting, (tie,) = glued_conduction(*known)
+    rise = conducting.solve(none := np.zeros(conducting.spaces.owned))
     upper = conducting.spaces.nodes_of(bodies, "upper")
     assert largest(rise - HOT * upper) < 1e-10 * HOT
+    assert not transferred(tie, conducting.multipliers(rise, none), 2).any()
     assert conducting.spaces.groups == ((0, 1),)
 
 

@@ -96,6 +96,11 @@ class Joints:
         return np.cumsum([0, *(joint.count for joint in self.each)])
 
     @property
+    def count(self) -> int:
+        """Number m of multipliers of all joints."""
+        return int(self.starts[-1])
+
+    @property
     def surfaces(self) -> tuple[str, ...]:
         """Glued surfaces."""
         return tuple(surface for joint in self.each for surface in joint.surfaces)

@@ -17,6 +17,7 @@ import scipy.sparse as sp
 from ...bulk.joints.joint import Joint, Joints
 from ...bulk.kinematics import Kinematics
 from ...bulk.spaces import Spaces
+from ...errors import CaseError
 from ..operators.pressure import pressure_basis
 from ..operators.traces import value_trace
 from ..search.face import Face, Surface
@@ -24,6 +25,8 @@ from ..search.pairing import PairedFace, Pairing, pair
 
 _SMALLER = 1 - 1e-6
 """Ratio of areas from which a face is smaller than another one."""
+_APART = 0.02
+"""Largest distance of glued faces, relative to their size: those of coarse curved meshes differ."""
 
 
 def glued_points(
@@ -46,13 +49,20 @@ def glued_points(
     Raises
     ------
     CaseError
-        If the faces do not lie opposite each other.
+        If the faces do not lie opposite each other, or are apart.
     """
     first, second = (float(face.sizes.sum()) for face in (face_1, face_2))
     equal = min(first, second) > _SMALLER * max(first, second)
     swapped = len(face_2.nodes) > len(face_1.nodes) if equal else second < first
     faces = (face_2, face_1) if swapped else (face_1, face_2)
-    return pair(*faces, kinematics, degree + 2, comm=comm)
+    tie = pair(*faces, kinematics, degree + 2, comm=comm)
+    apart = float(np.abs(tie.gap).max())
+    if apart > _APART * tie.extent:
+        raise CaseError(
+            f"geometry: the glued faces {face_1.name} and {face_2.name} are up to {apart:.2g} m "
+            "apart; glued faces must coincide"
+        )
+    return tie
 
 
 def elastic_joints(spaces: Spaces, ties: Sequence[Pairing]) -> Joints:

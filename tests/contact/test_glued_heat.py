@@ -137,25 +137,27 @@ def test_an_insulating_joint():
     assert conducting.spaces.groups == ((0, 1),)
 
 
-def ring_on_block(spread):
-    """Strip of two glued layers that moves along a block at rest, with heat carried along."""
-    block = Box("block", ((0.0, 0.04), (-0.02, 0.0)), (4, 3))
-    low = Box("low", ((0.0, 0.04), (0.0, 0.01)), (4, 2))
-    high = Box("high", ((0.0, 0.04), (0.01, 0.03)), (4, 3))
-    bodies = boxes(low, block, high)
-    joined = [("low_high_y", "high_low_y"), ("block_high_y", "low_low_y")]
-    passage = Passage(("low", "high"), None, 0.02, spread)
+def strip_on_block(spread, layers=True):
+    """Strip of two glued layers, or of one mesh, that moves along a block at rest."""
+    each = [Box("block", ((0.0, 0.04), (-0.02, 0.0)), (4, 3))]
+    each += [Box("high", ((0.0, 0.04), (0.01, 0.03)), (4, 4))] * layers
+    each += [Box("low", ((0.0, 0.04), (0.0, 0.01 if layers else 0.03)), (4, 2 if layers else 6))]
+    bodies, top = boxes(*each), "high" if layers else "low"
+    joined = [("block_high_y", "low_low_y"), *[("low_high_y", "high_low_y")] * layers]
+    passage = Passage(("low", "high")[: 1 + layers], None, 0.02, spread)
     ties, spaces = ties_of(bodies, 3, joined), lagrange_spaces(bodies, 3)
-    joints = thermal_joints(spaces, ties, [inf, 3e3])
-    materials = dict.fromkeys(("low", "high", "block"), ThermalMaterial(40.0, 3e6))
-    known = bodies, PLANE, spaces, materials, {"high_high_y": 5e3}, {"block_low_y": 0.0}
+    joints = thermal_joints(spaces, ties, [3e3, inf][: 1 + layers])
+    materials = dict.fromkeys(bodies.names, ThermalMaterial(40.0, 3e6))
+    known = bodies, PLANE, spaces, materials, {f"{top}_high_y": 5e3}, {"block_low_y": 0.0}
     return bodies, conduction(*known, empty_matrix(spaces), passage, joints=joints)
 
 
 @pytest.mark.parametrize("spread", [False, True])
 def test_heat_carried_along(spread):
-    """requirement: the heat balance of glued bodies that move past one at rest."""
-    bodies, conducting = ring_on_block(spread)
+    """requirement: the heat balance of glued bodies that move past one at rest, and as much heat
+    carried along and cooled as in one moving body.
+    """
+    bodies, conducting = strip_on_block(spread)
     spaces = conducting.spaces
     heat = surface_heat(bodies, PLANE, spaces, "block_high_x", 1e5)
     rise = conducting.solve(heat)
@@ -166,6 +168,10 @@ def test_heat_carried_along(spread):
     assert adjoint == pytest.approx(
         sum_over_ranks(COMM, weights @ conducting.respond(heat)), rel=1e-9
     )
+    whole, one = strip_on_block(spread, layers=False)
+    heat_of_one = surface_heat(whole, PLANE, one.spaces, "block_high_x", 1e5)
+    expected = one.losses(one.solve(heat_of_one), heat_of_one)
+    assert conducting.losses(rise, heat) == pytest.approx(expected, rel=2e-3)
     if spread:  # both layers share the paths of the joint
         nodes = spaces.nodes()
         at = np.abs(nodes[:, 1] - 0.01) < 1e-9
@@ -316,7 +322,7 @@ def test_heat_conducted_in_bodies_and_joints(conductance):
 
 def numbers():
     """Temperatures at points and balances on any number of ranks."""
-    bodies, conducting = ring_on_block(True)
+    bodies, conducting = strip_on_block(True)
     heat = surface_heat(bodies, PLANE, conducting.spaces, "block_high_x", 1e5)
     rise = conducting.solve(heat)
     bodies, joined, _ = stack("tetrahedron", True)

@@ -3,8 +3,8 @@
 Displacement and temperature are continuous in the mean, weighted by functions one degree below
 them on the facets of one face (mortar method: Bernardi, Maday and Patera, 1994; with multipliers:
 Belgacem, Numer. Math. 84 (1999) 173). The multipliers have the basis of the pressure of contact,
-for each component. Multipliers of the lower degree are stable for any ratio of the element sizes;
-those of degree one on linear elements wherever no value at the edge of the joint is fixed.
+for each component, which is stable for any ratio of the element sizes; beside supports see
+`bulk.joints.conditions`.
 """
 
 from __future__ import annotations

@@ -16,6 +16,7 @@ from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.search.face import gather_faces
 from thermowear.contact.ties.joints import elastic_joints, glued_points, thermal_joints
+from thermowear.geometry.mesh.mixed import joined
 from thermowear.geometry.meshing.cells import (
     Sheet,
     divided_hexahedra,
@@ -43,11 +44,16 @@ class Box(NamedTuple):
 
 
 def boxes(*given: Box, order=1, cells="quadrilateral", place=np.asarray) -> Bodies:
-    """Distributed meshes of boxes, placed by a map of their coordinates."""
-    return distribute(_tagged(given, order, cells, place) if COMM.rank == 0 else None, COMM)
+    """Distributed meshes of boxes, placed by a map of their coordinates; see `tagged_boxes`."""
+    tagged = tagged_boxes(given, order, cells, place) if COMM.rank == 0 else None
+    return distribute(tagged, COMM)
 
 
-def _tagged(given, order, cells, place):
+def tagged_boxes(given, order=1, cells="quadrilateral", place=np.asarray):
+    """Mesh of boxes; cells of one kind, or of a kind for each box."""
+    if not isinstance(cells, str):
+        pairs = zip(given, cells, strict=True)
+        return joined([tagged_boxes([box], order, kind, place) for box, kind in pairs])
     meshed, claims = {}, {}
     for name, ends, counts in given:
         lines = [np.linspace(*span, n + 1) for span, n in zip(ends, counts, strict=True)]
@@ -89,27 +95,27 @@ def kinematics_of(bodies: Bodies) -> Kinematics:
     return Spatial() if bodies.dim == 3 else PLANE
 
 
-def ties_of(bodies, degree, joined, kinematics=None):
+def ties_of(bodies, degree, pairs, kinematics=None):
     """Pairs of points of pairs of surfaces."""
     chosen = kinematics or kinematics_of(bodies)
-    return [glued_points(*gather_faces(bodies, pair), chosen, degree) for pair in joined]
+    return [glued_points(*gather_faces(bodies, pair), chosen, degree) for pair in pairs]
 
 
-def glued_elasticity(bodies, degree, joined, materials, clamped, kinematics=None, **supports):
+def glued_elasticity(bodies, degree, pairs, materials, clamped, kinematics=None, **supports):
     """Elasticity of bodies glued at pairs of surfaces, and the ties."""
     chosen = kinematics or kinematics_of(bodies)
-    ties = ties_of(bodies, degree, joined, chosen)
+    ties = ties_of(bodies, degree, pairs, chosen)
     materials = {name: ElasticMaterial(*values) for name, values in materials.items()}
     joints = lambda spaces: elastic_joints(spaces, ties)  # noqa: E731
     return elasticity(bodies, chosen, degree, materials, clamped, joints=joints, **supports), ties
 
 
 def glued_conduction(
-    bodies, degree, joined, conductances, materials, given, cooling=None, kinematics=None
+    bodies, degree, pairs, conductances, materials, given, cooling=None, kinematics=None
 ):
     """Conduction in bodies glued at pairs of surfaces, and the ties."""
     chosen = kinematics or kinematics_of(bodies)
-    ties = ties_of(bodies, degree, joined, chosen)
+    ties = ties_of(bodies, degree, pairs, chosen)
     spaces = lagrange_spaces(bodies, degree)
     joints = thermal_joints(spaces, ties, conductances)
     materials = {name: ThermalMaterial(*values) for name, values in materials.items()}

@@ -25,21 +25,23 @@ from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.contact.ties.joints import glued_points, transferred
 from thermowear.errors import CaseError
+from thermowear.geometry.mesh.held import free_motions
 from thermowear.laws.motions import translation
 from thermowear.parallel import sum_over_ranks
 
-from .glued import COMM, PLANE, Box, boxes, glued_elasticity, turned
+from .glued import COMM, PLANE, Box, boxes, glued_elasticity, tagged_boxes, turned
 
 pytest_needs_ranks = pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
 WIDTH, HEIGHTS = 0.04, (0.02, 0.03)
 E, CONTRAST = 2e11, 5.0
 IN_PLANE = [("quadrilateral", k) for k in (1, 2, 8)] + [("triangle", k) for k in (1, 2)]
 IN_SPACE = [(cells, k) for cells in ("hexahedron", "tetrahedron") for k in (1, 2)]
+MIXED = [(("hexahedron", "tetrahedron"), 2), (("triangle", "quadrilateral"), 3)]
 
 
 def stack(cells, fine, swap=False, place=np.asarray, order=1):
-    """Two boxes, one on the other, the finer first or last."""
-    dim = 3 if cells in ("hexahedron", "tetrahedron") else 2
+    """Two boxes, one on the other, the finer first or last; cells of one kind, or of two."""
+    dim = 3 if "hexahedron" in cells or "tetrahedron" in cells else 2
     base, letter = ((0.0, WIDTH),) * (dim - 1), "xyz"[dim - 1]
     counts = [(n,) * (dim - 1) + (1 + (dim == 2),) for n in ((5, 2) if fine else (2, 3))]
     upper = Box("upper", (*base, (0.0, HEIGHTS[0])), counts[0])
@@ -64,7 +66,7 @@ def forces(elastic, loaded):
 
 @pytest.mark.parametrize("fine", [True, False])
 @pytest.mark.parametrize("kind", ["pull", "shear"])
-@pytest.mark.parametrize(("cells", "degree"), IN_PLANE + IN_SPACE)
+@pytest.mark.parametrize(("cells", "degree"), IN_PLANE + IN_SPACE + MIXED)
 def test_patch(cells, degree, kind, fine):
     """requirement: uniform stress in glued blocks of any cells that do not match, stiff on soft, in
     a turned frame, to 1e-10; the joint transfers it, and the support carries it.
@@ -298,6 +300,20 @@ def test_contact_like_one_body(method):
     assert glued == pytest.approx(np.interp(x, at, whole), abs=1e-3 * whole.max())
 
 
+@pytest.mark.parametrize("cells", ["tetrahedron", ("hexahedron", "tetrahedron")])
+def test_free_motions_of_glued_bodies(cells):
+    """requirement: a body without a support of its own is held by those glued to it."""
+    ends = ((0.0, 0.04), (0.0, 0.04))
+    given = Box("a", (*ends, (0.0, 0.02)), (2, 2, 1)), Box("b", (*ends, (-0.03, 0.0)), (1, 1, 1))
+    mesh, every = tagged_boxes(given, cells=cells), ["along x", "along y", "along z"]
+    every += ["about x", "about y", "about z"]
+    clamped, guided = ["b_low_z"], ((), (), ())
+    assert free_motions(mesh, ["a"], clamped, guided) == every
+    assert free_motions(mesh, ["a", "b"], clamped, guided) == []
+    apart = (("a_low_x",), ("b_low_y",), ())  # each guides the others
+    assert free_motions(mesh, ["a", "b"], (), apart) == ["along z"]
+
+
 def test_glued_bodies_are_factorised():
     """requirement: multigrid is refused in one line, and not chosen where a factor fits."""
     bodies, joined, _ = stack("hexahedron", True)
@@ -319,6 +335,15 @@ def test_the_smaller_face_has_the_multipliers():
         tie = glued_points(*gather_faces(bodies, surfaces), PLANE, 2)
         assert tie.sides[0].face.name == "small_low_y"
         assert tie.unpaired == pytest.approx(0.0, abs=1e-9)
+
+
+def test_glued_faces_that_are_apart():
+    """requirement: refused in one line that names them."""
+    upper = Box("upper", ((0.0, 0.04), (0.002, 0.02)), (2, 1))
+    bodies = boxes(upper, Box("lower", ((0.0, 0.04), (-0.02, 0.0)), (3, 1)))
+    faces = gather_faces(bodies, ("upper_low_y", "lower_high_y"))
+    with pytest.raises(CaseError, match=r"glued faces upper_low_y and lower_high_y are "):
+        glued_points(*faces, PLANE, 2)
 
 
 def numbers():

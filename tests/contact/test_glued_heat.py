@@ -22,9 +22,9 @@ from thermowear.contact.operators.condensation import (
 from thermowear.contact.operators.coupled_heat import CoupledHeat
 from thermowear.contact.operators.heat import BaselineResponse
 from thermowear.contact.operators.heat_exchange import FaceHeat
-from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.pressure import joined_bases, pressure_basis
 from thermowear.contact.operators.thermal_opening import ThermalOpening, condense_distortion
-from thermowear.contact.operators.traces import gap_trace, value_trace
+from thermowear.contact.operators.traces import face_traces, gap_trace, value_trace
 from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.face import gather_faces
 from thermowear.contact.search.pairing import pair
@@ -130,32 +130,35 @@ def test_an_insulating_joint():
     """requirement: without conductance no heat passes; the bodies are still solved together."""
     bodies, joined, _ = stack("triangle", True)
     known = bodies, 2, joined, [0.0], CONDUCTIVITIES, {"upper_high_y": HOT, "lower_low_y": 0.0}
-    conducting, _ = glued_conduction(*known)
-    rise = conducting.solve(np.zeros(conducting.spaces.owned))
+    conducting, (tie,) = glued_conduction(*known)
+    rise = conducting.solve(none := np.zeros(conducting.spaces.owned))
     upper = conducting.spaces.nodes_of(bodies, "upper")
     assert largest(rise - HOT * upper) < 1e-10 * HOT
+    assert not transferred(tie, conducting.multipliers(rise, none), 2).any()
     assert conducting.spaces.groups == ((0, 1),)
 
 
-def ring_on_block(spread):
-    """Strip of two glued layers that moves along a block at rest, with heat carried along."""
-    block = Box("block", ((0.0, 0.04), (-0.02, 0.0)), (4, 3))
-    low = Box("low", ((0.0, 0.04), (0.0, 0.01)), (4, 2))
-    high = Box("high", ((0.0, 0.04), (0.01, 0.03)), (4, 3))
-    bodies = boxes(low, block, high)
-    joined = [("low_high_y", "high_low_y"), ("block_high_y", "low_low_y")]
-    passage = Passage(("low", "high"), None, 0.02, spread)
+def strip_on_block(spread, layers=True):
+    """Strip of two glued layers, or of one mesh, that moves along a block at rest."""
+    each = [Box("block", ((0.0, 0.04), (-0.02, 0.0)), (4, 3))]
+    each += [Box("high", ((0.0, 0.04), (0.01, 0.03)), (4, 4))] * layers
+    each += [Box("low", ((0.0, 0.04), (0.0, 0.01 if layers else 0.03)), (4, 2 if layers else 6))]
+    bodies, top = boxes(*each), "high" if layers else "low"
+    joined = [("block_high_y", "low_low_y"), *[("low_high_y", "high_low_y")] * layers]
+    passage = Passage(("low", "high")[: 1 + layers], None, 0.02, spread)
     ties, spaces = ties_of(bodies, 3, joined), lagrange_spaces(bodies, 3)
-    joints = thermal_joints(spaces, ties, [inf, 3e3])
-    materials = dict.fromkeys(("low", "high", "block"), ThermalMaterial(40.0, 3e6))
-    known = bodies, PLANE, spaces, materials, {"high_high_y": 5e3}, {"block_low_y": 0.0}
+    joints = thermal_joints(spaces, ties, [3e3, inf][: 1 + layers])
+    materials = dict.fromkeys(bodies.names, ThermalMaterial(40.0, 3e6))
+    known = bodies, PLANE, spaces, materials, {f"{top}_high_y": 5e3}, {"block_low_y": 0.0}
     return bodies, conduction(*known, empty_matrix(spaces), passage, joints=joints)
 
 
 @pytest.mark.parametrize("spread", [False, True])
 def test_heat_carried_along(spread):
-    """requirement: the heat balance of glued bodies that move past one at rest."""
-    bodies, conducting = ring_on_block(spread)
+    """requirement: the heat balance of glued bodies that move past one at rest, and as much heat
+    carried along and cooled as in one moving body.
+    """
+    bodies, conducting = strip_on_block(spread)
     spaces = conducting.spaces
     heat = surface_heat(bodies, PLANE, spaces, "block_high_x", 1e5)
     rise = conducting.solve(heat)
@@ -166,6 +169,10 @@ def test_heat_carried_along(spread):
     assert adjoint == pytest.approx(
         sum_over_ranks(COMM, weights @ conducting.respond(heat)), rel=1e-9
     )
+    whole, one = strip_on_block(spread, layers=False)
+    heat_of_one = surface_heat(whole, PLANE, one.spaces, "block_high_x", 1e5)
+    expected = one.losses(one.solve(heat_of_one), heat_of_one)
+    assert conducting.losses(rise, heat) == pytest.approx(expected, rel=2e-3)
     if spread:  # both layers share the paths of the joint
         nodes = spaces.nodes()
         at = np.abs(nodes[:, 1] - 0.01) < 1e-9
@@ -325,7 +332,7 @@ def test_heat_conducted_in_bodies_and_joints(conductance):
 
 def numbers():
     """Temperatures at points and balances on any number of ranks."""
-    bodies, conducting = ring_on_block(True)
+    bodies, conducting = strip_on_block(True)
     heat = surface_heat(bodies, PLANE, conducting.spaces, "block_high_x", 1e5)
     rise = conducting.solve(heat)
     bodies, joined, _ = stack("tetrahedron", True)
@@ -350,3 +357,39 @@ def numbers():
 def test_two_ranks_give_the_serial_numbers():
     """requirement: temperatures and balances on two ranks as on one, to 1e-8."""
     assert on_two_ranks("test_glued_heat") == pytest.approx(numbers(), rel=1e-8, abs=1e-7)
+
+
+def test_faces_on_both_sides_of_glued_layers():
+    """requirement: heat into one face of glued layers is felt at the other one, condensed too."""
+    heights = {"low": (-0.02, 0.0), "one": (0.0, 0.01), "two": (0.01, 0.03), "high": (0.03, 0.05)}
+    counts = {"low": 3, "one": 2, "two": 4, "high": 3}
+    each = [Box(name, ((0.0, 0.04), span), (counts[name], 2)) for name, span in heights.items()]
+    bodies = boxes(*each)
+    (tie,) = ties_of(bodies, 2, [("one_high_y", "two_low_y")])
+    faces = [("one_low_y", "low_high_y"), ("high_low_y", "two_high_y")]
+    pairings = tuple(pair(*gather_faces(bodies, names), PLANE, 4) for names in faces)
+    contacts, spaces = Contacts(pairings, ((1, 0), (3, 2))), lagrange_spaces(bodies, 2)
+    traces, w = face_traces(spaces, contacts), contacts.weights
+    shifts = (np.full(len(w), 1000.0), np.full(len(w), 300.0))
+    conducting = conduction(
+        bodies,
+        PLANE,
+        spaces,
+        dict.fromkeys(bodies.names, ThermalMaterial(5.0, 3e6)),
+        {"low_low_y": 200.0, "high_high_y": 300.0},
+        {},
+        bath_matrix(spaces, traces, w, shifts),
+        joints=thermal_joints(spaces, [tie], [4e3]),
+    )
+    assert len(conducting.spaces.groups) == 3
+    basis = joined_bases([pressure_basis(pairing, 1) for pairing in pairings])
+    at_points = w, basis, traces, shifts, shifts, 0.5
+    friction = 1e5 * (1.5 + np.cos(70 * contacts.points[:, 0]))
+    none, h = np.zeros(len(w)), np.full(len(w), 500.0)
+    condensed = condense_heat(conducting, FaceHeat(*at_points))
+    assert len(condensed.response) == 3
+    first, second = (
+        face.exchange(h).state(friction, BaselineResponse((none, none))).rise
+        for face in (condensed, CoupledHeat(*at_points, conducting))
+    )
+    np.testing.assert_allclose(first, second, rtol=1e-8)

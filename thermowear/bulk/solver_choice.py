@@ -236,7 +236,7 @@ def linear_solver(
     joints : Joints
         Joints of glued bodies.
     """
-    if joints.each:
+    if joints.count:
         choice.require_direct()
     if choice.iterative and symmetry in ("definite", "none"):
         return MultigridSolver(matrix, spaces, fixed, coarse, symmetric=symmetry == "definite")

@@ -138,6 +138,13 @@ class Model:
                 f"{len(self.bodies)}, and each may have one holder only"
             )
 
+        for tie in self.ties:
+            if len({self.bodies[index].ring for index in tie.bodies}) > 1:
+                raise CaseError(
+                    f"model: the tie {tie.name!r} joins a whole ring and a sector; glued bodies "
+                    "must both be whole rings, or both cover the sector"
+                )
+
     @property
     def is_pair(self) -> bool:
         """True for two bodies with one interface, of which the first one is held."""

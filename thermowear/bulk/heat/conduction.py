@@ -93,7 +93,7 @@ class Conduction:
     def solve(self, heat: np.ndarray) -> np.ndarray:
         """Rise [K] due to nodal heat [W] and prescribed temperatures."""
         rise = self.prescribed + self.respond(heat - self._from_prescribed)
-        if not self.joints.each:
+        if not self.joints.count:
             return rise
         jumps = self.joints.jumps(self.spaces, self.prescribed)
         return rise - self._joined.closing(jumps) if jumps.any() else rise
@@ -181,14 +181,14 @@ class Conduction:
 
         Heat fluxes into the first of the bodies [W/m²].
         """
-        if not self.joints.each:
+        if not self.joints.count:
             return np.zeros(0)
         residual = heat - multiply(self.conductivity, rise)
         return self._joined.multipliers(residual, self.joints.jumps(self.spaces, rise))
 
     def joint_heat(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
         """Nodal heat that the joints pass to the bodies [W], see `multipliers`; owned rows."""
-        if not self.joints.each:
+        if not self.joints.count:
             return np.zeros(len(rise))
         return -(self.joints.jump @ self.multipliers(rise, heat))
 

@@ -39,6 +39,6 @@ def conduction_solver(
         return even.factor(matrix, fixed, known, joints)
     first = matrix.getOwnershipRange()[0]
     matrix.zeroRowsColumns((np.flatnonzero(fixed) + first).astype(PETSc.IntType), diag=1.0)
-    if choice.iterative and moving is not None and moving.paths is not None and not joints.each:
+    if choice.iterative and moving is not None and moving.paths is not None and not joints.count:
         return PathSolver(matrix, spaces, fixed, moving.paths)
     return linear_solver(choice, matrix, spaces, fixed, known, coupled=coupled, joints=joints)

@@ -32,8 +32,11 @@ def conditions(border: Border, fixed: np.ndarray, comm) -> sp.csr_array:
         Mask of fixed values.
     comm : mpi4py.MPI.Comm
     """
-    joined = _resolved(border, fixed, comm)
-    return joined[:, _independent(border, joined, fixed, comm)]
+    key = fixed.tobytes()
+    if not all(comm.allgather(key in border.known)):
+        joined = _resolved(border, fixed, comm)
+        border.known[key] = joined[:, _independent(border, joined, fixed, comm)]
+    return border.known[key]
 
 
 def _resolved(border: Border, fixed: np.ndarray, comm) -> sp.csr_array:

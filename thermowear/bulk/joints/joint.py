@@ -11,7 +11,7 @@ that of an interface with a resistance: with the matrix C of the weak jump
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -65,6 +65,8 @@ class Border:
         Numbers of its multipliers among those of all joints.
     closed : bool
         True if the joints form circles, so that some conditions may follow from others.
+    known : dict
+        Results of `conditions` by the mask of fixed values.
     """
 
     jump: sp.csr_matrix
@@ -72,6 +74,7 @@ class Border:
     resistance: sp.csr_matrix
     columns: np.ndarray
     closed: bool
+    known: dict[bytes, sp.csr_array] = field(default_factory=dict, init=False, repr=False)
 
     @property
     def count(self) -> int:
@@ -94,6 +97,11 @@ class Joints:
     def starts(self) -> np.ndarray:
         """First multiplier of each joint, and their number at the end."""
         return np.cumsum([0, *(joint.count for joint in self.each)])
+
+    @property
+    def count(self) -> int:
+        """Number m of multipliers of all joints."""
+        return int(self.starts[-1])
 
     @property
     def surfaces(self) -> tuple[str, ...]:
@@ -130,7 +138,18 @@ class Joints:
         return Spaces(spaces.each, tuple(joint.bodies for joint in self.each))
 
     def border(self, bodies: Sequence[int], rows: Rows) -> Border:
-        """Border of the equations of bodies, of which no other is glued to them, by their rows."""
+        """Border of the equations of bodies, to which no other is glued, by their owned rows."""
+        key = tuple(bodies)
+        if key not in self._borders:
+            self._borders[key] = self._border(key, rows)
+        return self._borders[key]
+
+    @cached_property
+    def _borders(self) -> dict[tuple[int, ...], Border]:
+        """Borders made so far, by the bodies."""
+        return {}
+
+    def _border(self, bodies: tuple[int, ...], rows: Rows) -> Border:
         own = [k for k, joint in enumerate(self.each) if joint.bodies[0] in bodies]
         columns = [np.arange(*self.starts[k : k + 2]) for k in own]
         if not own:

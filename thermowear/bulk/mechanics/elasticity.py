@@ -95,7 +95,7 @@ class Elasticity:
 
     def multipliers(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Multipliers of the joints (m,) of a solution under nodal loads. Every rank calls."""
-        result = np.zeros(self.joints.starts[-1])
+        result = np.zeros(self.joints.count)
         for group, rows in self._with_rows:
             found = group.multipliers(displacement[rows], loads[rows])
             result[group.border.columns] = found
@@ -103,13 +103,13 @@ class Elasticity:
 
     def joint_forces(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Nodal forces of the joints on the bodies [N], supported values included, owned rows."""
-        if not self.joints.each:
+        if not self.joints.count:
             return np.zeros(len(loads))
         return -(self.joints.jump @ self.multipliers(displacement, loads))
 
     def unbalanced(self, forces: np.ndarray) -> np.ndarray:
         """Nodal forces (n_owned,) on free values without those that the joints carry [N]."""
-        if not self.joints.each:
+        if not self.joints.count:
             return forces
         none = np.zeros(len(forces))
         return forces + without_fixed(self.joint_forces(none, forces), self.fixed)

@@ -18,14 +18,15 @@ from ..search.contacts import Contacts
 from ..search.pairing import PairedFace, Pairing
 
 
-def value_trace(spaces: Spaces, side: PairedFace) -> sp.csr_matrix:
-    """Transposed trace Eᵀ of scalar spaces: shape (n_owned, n_points). Every rank calls.
+def value_trace(spaces: Spaces, side: PairedFace, component: int = 0) -> sp.csr_matrix:
+    """Transposed trace Eᵀ of one component: shape (n_owned, n_points). Every rank calls.
 
-    ``E v`` are the values of a field at the points of one side.
+    ``E v`` are the values of a field, or of one of its components, at the points of one side.
     """
     index = side.face.body
     nodes, point, values = _local_values(spaces.each[index], side)
-    return gather_rows(spaces, index, nodes, point, values, len(side.t))
+    rows = nodes * spaces.components + component
+    return gather_rows(spaces, index, rows, point, values, len(side.t))
 
 
 def face_traces(spaces: Spaces, contacts: Contacts) -> tuple[sp.csr_matrix, sp.csr_matrix]:

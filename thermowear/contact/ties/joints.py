@@ -3,8 +3,8 @@
 Displacement and temperature are continuous in the mean, weighted by functions one degree below
 them on the facets of one face (mortar method: Bernardi, Maday and Patera, 1994; with multipliers:
 Belgacem, Numer. Math. 84 (1999) 173). The multipliers have the basis of the pressure of contact,
-for each component. Multipliers of the lower degree are stable for any ratio of the element sizes;
-those of degree one on linear elements wherever no value at the edge of the joint is fixed.
+for each component, which is stable for any ratio of the element sizes; beside supports see
+`bulk.joints.conditions`.
 """
 
 from __future__ import annotations
@@ -17,14 +17,16 @@ import scipy.sparse as sp
 from ...bulk.joints.joint import Joint, Joints
 from ...bulk.kinematics import Kinematics
 from ...bulk.spaces import Spaces
+from ...errors import CaseError
 from ..operators.pressure import pressure_basis
-from ..operators.traces import value_trace, vector_trace
-from ..search.contacts import Contacts
+from ..operators.traces import value_trace
 from ..search.face import Face, Surface
-from ..search.pairing import Pairing, pair
+from ..search.pairing import PairedFace, Pairing, pair
 
 _SMALLER = 1 - 1e-6
 """Ratio of areas from which a face is smaller than another one."""
+_APART = 0.02
+"""Largest distance of glued faces, relative to their size: those of coarse curved meshes differ."""
 
 
 def glued_points(
@@ -47,13 +49,20 @@ def glued_points(
     Raises
     ------
     CaseError
-        If the faces do not lie opposite each other.
+        If the faces do not lie opposite each other, or are apart.
     """
     first, second = (float(face.sizes.sum()) for face in (face_1, face_2))
     equal = min(first, second) > _SMALLER * max(first, second)
     swapped = len(face_2.nodes) > len(face_1.nodes) if equal else second < first
     faces = (face_2, face_1) if swapped else (face_1, face_2)
-    return pair(*faces, kinematics, degree + 2, comm=comm)
+    tie = pair(*faces, kinematics, degree + 2, comm=comm)
+    apart = float(np.abs(tie.gap).max())
+    if apart > _APART * tie.extent:
+        raise CaseError(
+            f"geometry: the glued faces {face_1.name} and {face_2.name} are up to {apart:.2g} m "
+            "apart; glued faces must coincide"
+        )
+    return tie
 
 
 def elastic_joints(spaces: Spaces, ties: Sequence[Pairing]) -> Joints:
@@ -66,7 +75,7 @@ def elastic_joints(spaces: Spaces, ties: Sequence[Pairing]) -> Joints:
     ties : sequence of Pairing
         See `glued_points`.
     """
-    return Joints(tuple(_elastic_joint(spaces, tie) for tie in ties))
+    return Joints(tuple(_joint(spaces, tie, np.inf) for tie in ties))
 
 
 def thermal_joints(
@@ -85,7 +94,7 @@ def thermal_joints(
         insulating one [W/(m² K)].
     """
     pairs = zip(ties, conductances, strict=True)
-    return Joints(tuple(_thermal_joint(spaces, tie, h) for tie, h in pairs))
+    return Joints(tuple(_joint(spaces, tie, h) for tie, h in pairs))
 
 
 def transferred(tie: Pairing, multipliers: np.ndarray, degree: int) -> np.ndarray:
@@ -105,35 +114,32 @@ def transferred(tie: Pairing, multipliers: np.ndarray, degree: int) -> np.ndarra
         Components of the traction [Pa], or the flux alone [W/m²]. The other body has the opposite.
     """
     basis = _functions(tie, degree)
+    if not len(multipliers):  # insulating
+        return np.zeros((len(tie.weights), 1))
     return basis @ multipliers.reshape(-1, basis.shape[1]).T
 
 
-def _elastic_joint(spaces: Spaces, tie: Pairing) -> Joint:
-    weighted = sp.diags_array(tie.weights) @ _functions(tie, spaces.degree)
-    units = (np.tile(unit, (len(tie.weights), 1)) for unit in np.eye(spaces.components))
-    jump = sp.hstack(
-        [vector_trace(spaces, Contacts((tie,)), unit) @ weighted for unit in units], format="csr"
-    )
-    return _joint(spaces, tie, jump, sp.csr_matrix((jump.shape[1],) * 2))
-
-
-def _thermal_joint(spaces: Spaces, tie: Pairing, conductance: float) -> Joint:
+def _joint(spaces: Spaces, tie: Pairing, conductance: float) -> Joint:
+    """Joint of a conductance: infinite where the field is continuous."""
     functions = _functions(tie, spaces.degree)
     if conductance == 0.0:
         functions = functions[:, :0]
-    first, second = (value_trace(spaces, side) for side in tie.sides)
     weighted = sp.diags_array(tie.weights) @ functions
-    resistance = sp.csr_matrix(weighted.T @ functions / (conductance or 1.0))
-    resistance.eliminate_zeros()
-    return _joint(spaces, tie, ((second - first) @ weighted).tocsr(), resistance)
+    first, second = (_weighted_trace(spaces, side, weighted) for side in tie.sides)
+    resistance = sp.csr_matrix((first.shape[1],) * 2)
+    if 0.0 < conductance < np.inf:
+        resistance = sp.csr_matrix(weighted.T @ functions / conductance)
+    one, two = (side.face for side in tie.sides)
+    bodies, surfaces = (one.body, two.body), (one.name, two.name)
+    return Joint(bodies, surfaces, second - first, -first, resistance)
+
+
+def _weighted_trace(spaces: Spaces, side: PairedFace, weighted: sp.csr_array) -> sp.csr_matrix:
+    """Traces of all components on one side, each weighted by functions at the points (n, m)."""
+    components = range(spaces.components)
+    return sp.hstack([value_trace(spaces, side, k) @ weighted for k in components], format="csr")
 
 
 def _functions(tie: Pairing, degree: int) -> sp.csr_array:
     """Functions Ψ of the multipliers at the points, shape (n, m)."""
     return sp.csr_array(pressure_basis(tie, max(degree - 1, 1)))
-
-
-def _joint(spaces: Spaces, tie: Pairing, jump: sp.csr_matrix, resistance: sp.csr_matrix) -> Joint:
-    first, second = (side.face for side in tie.sides)
-    own = spaces.placed(spaces.rows(first.body), jump[spaces.rows(first.body)])
-    return Joint((first.body, second.body), (first.name, second.name), jump, own, resistance)

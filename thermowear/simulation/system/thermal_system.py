@@ -117,7 +117,10 @@ def thermal_system(
             name: temperature_at(value, 0.0) - heat.ambient
             for name, value in heat.temperature.items()
         }
-        conductances = [np.inf if h is None else h for h in (t.conductance for t in model.ties)]
+        conductances = [
+            np.inf if tie.conductance is None else tie.conductance * model.ring(tie.faces[0])
+            for tie in model.ties
+        ]
         bath = bath_matrix(spaces, traces, contacts.weights, shifts)
         conducting = conduction(
             bodies,

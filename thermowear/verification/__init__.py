@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .cases.contact.contact_methods import methods_agree, patch
+from .cases.contact.glued_blocks import glued_blocks
 from .cases.contact.hertz import flat_punch, hertz_line, hertz_sphere
 from .cases.contact.hertz_in_space import hertz_elliptical, hertz_sphere_3d, hertz_sphere_3d_fine
 from .cases.contact.patch_in_space import patch_3d
@@ -34,6 +35,7 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     reciprocating, moving_band, two_slabs, pressure_conductance, temperature_dependent,
     minimality, step_flux, braking_stop, sliding_rod, half_plane_instability, optimal_shape,
     ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face, coating,
+    glued_blocks,
 ), ())  # fmt: skip
 CASES = {
     id: identified(id, case, *runs)

@@ -106,8 +106,12 @@ class WearRates:
 
     def by(self, law: Law, row: int, pressure: np.ndarray) -> np.ndarray:
         """Wear rate of a wearing body by a law, its own or that of one of its layers (n,) [m/s]."""
-        local = law.value(LocalState(pressure, *self.states[row]))
-        return self.spreads[row].rate(self.factors[row] * local)
+        spread, local = self.spreads[row], law.value(LocalState(pressure, *self.states[row]))
+        local = self.factors[row] * local
+        own = spread.share * local
+        if spread.means is not None:
+            own += spread.means.reach @ (spread.means.rows @ local)
+        return own
 
     def depths(self, pressure: np.ndarray) -> np.ndarray:
         """Depths worn in the time step, shape (n_wearing, n) [m]."""

@@ -73,6 +73,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
         self.loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
         self._speed = 0.0
+        self._coated = layers(system).keys()
         self._lost: dict[int, tuple[float, float]] = {}
         self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
 
@@ -154,7 +155,7 @@ class TransientHistory(AnalysisHistory[Moment]):
     def _lost_layers(self) -> dict[str, float | None]:
         """Time and distance at which each coated face first lost all layers; None if not yet."""
         found = {}
-        for index in layers(self.loop.now.system):
+        for index in self._coated:
             time, distance = self._lost.get(index, (None, None))
             found[f"worn_through_time_{index + 1}_s"] = time
             found[f"worn_through_distance_{index + 1}_m"] = distance
@@ -190,7 +191,7 @@ class TransientHistory(AnalysisHistory[Moment]):
     def _note_lost_layers(self, conditions, moment: Moment, slid: float, row: HistoryRow) -> None:
         """Keep the time and the sliding distance at which a face first lost all its layers."""
         now, known = self.loop.now, self._lost
-        if not now.system.model.coated or known.keys() >= layers(now.system).keys():
+        if known.keys() >= self._coated:
             return
         end, begin, last = WearingState(moment.state, conditions), None, self._last
         if last is not None and last.state.worn.shape == moment.state.worn.shape:

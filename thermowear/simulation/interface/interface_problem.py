@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...contact.wear.implicit_step import Slope, newton_with_wear
+from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
+from ...contact.wear.layered_step import LayeredStep
 from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat, friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
@@ -46,7 +47,7 @@ class InterfaceProblem(WearProblem):
         self._edge = GrowingEdge(system, method, self._wear)
         self._gap, n = system.contacts.gap - system.holder.imposed, len(system.weights)
         self._softness, self._rigid = system.softness, Slope.diagonal(np.zeros(n))
-        self._unworn = np.zeros((self._wear.count, n))
+        self._unworn = np.zeros((len(self._wear.laws), n))
         self._guess = ContactSolution(np.full(n, system.mean_pressure), np.zeros(0), None)
         self.stores_heat = system.model.heat is not None and system.model.heat.transient
 
@@ -80,12 +81,7 @@ class InterfaceProblem(WearProblem):
         return self._at_temperatures(self._unworn, self.heat.initial, 0.0)
 
     def take_over(
-        self,
-        former: InterfaceProblem,
-        state: InterfaceState,
-        worn: np.ndarray,
-        rise: np.ndarray | None,
-        time: float,
+        self, former: InterfaceProblem, state: InterfaceState, worn, rise, time: float
     ) -> InterfaceState:
         """Transfer a state of the same bodies from before an update of their meshes.
 
@@ -115,13 +111,7 @@ class InterfaceProblem(WearProblem):
             found = self._at_temperatures(worn, self.heat.given(stored), time, edge)
         return replace(found, peak=state.largest, pointwise=edge)
 
-    def _at_temperatures(
-        self,
-        worn: np.ndarray,
-        heat: InitialHeat,
-        time: float,
-        pointwise: np.ndarray | None = None,
-    ) -> InterfaceState:
+    def _at_temperatures(self, worn, heat: InitialHeat, time, pointwise=None) -> InterfaceState:
         """Contact at given temperatures."""
         guess = InterfaceState(worn, self._guess, faces=heat.baseline.unheated)
         conditions = self.conditions(guess, time)
@@ -129,14 +119,15 @@ class InterfaceProblem(WearProblem):
         return replace(guess, contact=contact, stored=heat.stored)
 
     def begin(self, state: InterfaceState) -> InterfaceState:
-        if not np.any(state.worn > 0.0) or state.contact.warm_start is None:
+        reached = np.any(state.worn > 0.0, axis=0)
+        if not reached.any() or state.contact.warm_start is None:
             return state
         if state.pointwise is None:
             depth = state.worn.sum(axis=0)[state.pressure > 0.0]
             # pointwise contact once the edge of the contact is that of the wear: once the wear
             # depth is steeper than the deflection, in the mean over the contact
-            inside = self._edge.partial_zones(state.worn) and depth.size
-            if not inside or np.ptp(depth) <= self._method.deflection_range(state.contact):
+            uniform = (reached.all() and not self._wear.layered) or not depth.size
+            if uniform or np.ptp(depth) <= self._method.deflection_range(state.contact):
                 return state
         edge = self._edge.points(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)
@@ -161,7 +152,7 @@ class InterfaceProblem(WearProblem):
             nonlocal found
             found = self._solve(before.worn, conditions, heat, edge, found, step)
             faces = heat.faces(conditions, found.pressure) if heat is not None and faced else None
-            grown = self._wear.in_step(before.worn, conditions, step).depths(found.pressure)
+            grown = self._in_step(before.worn, conditions, step).depths(found.pressure)
             return InterfaceState(before.worn + grown, found, before.peak, faces, pointwise=edge)
 
         if model.depends_on_state:
@@ -179,7 +170,7 @@ class InterfaceProblem(WearProblem):
     def prolonged(self, before: InterfaceState, after: InterfaceState, part, step, time):
         found = before.towards(after, part)
         if self._wear.layered:
-            wear = self._wear.in_step(before.worn, self.conditions(after, time), part * step)
+            wear = self._in_step(before.worn, self.conditions(after, time), part * step)
             found = replace(found, worn=before.worn + wear.depths(after.pressure))
         return found
 
@@ -192,6 +183,16 @@ class InterfaceProblem(WearProblem):
         found = model.at(time, state.pressure, state.faces, closed, state.worn)
         self._last_conditions = key, found
         return found
+
+    def _rates(self, conditions: InterfaceConditions, step: float = 1.0) -> WearRates:
+        """Wear rates under given conditions, for wear in a time step [s]."""
+        laws, spreads = self._wear.laws, self._wear.spreads
+        return WearRates(laws, spreads, conditions.wear, conditions.states, step)
+
+    def _in_step(self, worn: np.ndarray, conditions: InterfaceConditions, step: float):
+        """Wear in a time step [s] from given depths (n_wearing, n)."""
+        rates = self._rates(conditions, step)
+        return LayeredStep(rates, worn) if self._wear.layered else rates
 
     def _solve(
         self,
@@ -217,10 +218,10 @@ class InterfaceProblem(WearProblem):
             return self._method.solve(gap + opened, softened, last, conditions, heat, pointwise)
 
         start = None if guess is None or guess.warm_start is None else guess
-        if step == 0.0 or self._wear.count == 0:
+        if step == 0.0 or not self._wear.laws:
             return solve(self._rigid.point, self._rigid, start)
         start = start or solve(self._rigid.point, self._rigid, None)
-        return newton_with_wear(solve, self._wear.in_step(worn, conditions, step), start)
+        return newton_with_wear(solve, self._in_step(worn, conditions, step), start)
 
     def contact_state(self, state: InterfaceState, time: float) -> ContactState:
         """Contact loads of a state on the bodies; every rank calls."""
@@ -242,7 +243,7 @@ class InterfaceProblem(WearProblem):
         last = states[2]
         if last.pointwise is None:
             return super().edge_steps(states, step, time)
-        return self._edge.steps(states, step, self._wear.rates(self.conditions(last, time)))
+        return self._edge.steps(states, step, self._rates(self.conditions(last, time)))
 
     def difference_inside(self, one: InterfaceState, other: InterfaceState) -> float:
         """Largest difference of temperatures inside the bodies [K]; every rank calls."""
@@ -256,7 +257,7 @@ class InterfaceProblem(WearProblem):
     def first_step(self, state: InterfaceState) -> float:
         """Initial step: wear small against elastic deflection, small penetration of heat [s]."""
         conditions = self.conditions(state, 0.0)
-        fastest = float(self._wear.rates(conditions).value(state.pressure).max(initial=0.0))
+        fastest = float(self._rates(conditions).value(state.pressure).max(initial=0.0))
         step = np.inf
         if fastest > 0.0:
             step = 1e-3 * self._method.largest_deflection(state.contact) / fastest
@@ -272,7 +273,8 @@ class InterfaceProblem(WearProblem):
 
     def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
         """Relative difference to a steady pressure; NaN without one, or with layers left on."""
-        if steady is None or not self._wear.is_final(state.worn, steady > 0.0):
+        layered = self._wear.layered
+        if steady is None or (layered and self._wear.are_left(state.worn, steady > 0.0)):
             return float("nan")
         return float(np.abs(state.pressure - steady).max() / steady.max())
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from petsc4py import PETSc
 
@@ -152,6 +154,87 @@ class DirectSolver:
             columns.shape[::-1], csr=(*indices, columns.data), comm=self._comm
         )
         return PETSc.Mat().createTranspose(transposed)
+
+
+class GroupSolvers:
+    """Solvers of groups of bodies that are not coupled.
+
+    Parameters
+    ----------
+    rows : sequence of slice or ndarray of int
+        Owned rows of each group.
+    columns : sequence of ndarray of int
+        Multipliers of the joints in each group.
+    make : callable
+        Solver of a group by its index.
+    one_at_a_time : bool
+        True if a solver is made when it is first needed, and freed before that of another group.
+    """
+
+    def __init__(
+        self,
+        rows: Sequence[slice | np.ndarray],
+        columns: Sequence[np.ndarray],
+        make: Callable[[int], Any],
+        one_at_a_time: bool = False,
+    ):
+        self._rows, self._columns, self._make, self._alone = rows, columns, make, one_at_a_time
+        self._factors: dict[int, Any] = {}
+        if not one_at_a_time:
+            for group in range(len(rows)):
+                self.of(group)
+
+    def of(self, group: int) -> Any:
+        """Solver of one group. Every rank calls."""
+        if group not in self._factors:
+            self.release()
+            self._factors[group] = self._make(group)
+        return self._factors[group]
+
+    def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
+        """Solve for one or several right-hand sides, see `DirectSolver.solve`."""
+        result = np.empty(loads.shape, order="F")
+        for group, rows in enumerate(self._rows):
+            result[rows] = self.of(group).solve(loads[rows])
+        return result
+
+    def solve_transposed(self, loads: np.ndarray) -> np.ndarray:
+        """Solve with the transposed matrix; dense loads, shapes as in `solve`."""
+        result = np.empty(loads.shape, order="F")
+        for group, rows in enumerate(self._rows):
+            result[rows] = self.of(group).solve_transposed(loads[rows])
+        return result
+
+    def closing(self, jumps: np.ndarray) -> np.ndarray:
+        """Values without loads of given weak jumps, see `bulk.joints.joined_solver`."""
+        result = np.zeros(sum(len(np.r_[rows]) for rows in self._rows))
+        for solver, columns, rows in self._joined:
+            result[rows] = solver.closing(jumps[columns])
+        return result
+
+    def multipliers(self, residual: np.ndarray, jumps: np.ndarray) -> np.ndarray:
+        """Multipliers of all joints, see `bulk.joints.joined_solver`."""
+        result = np.zeros(len(jumps))
+        for solver, columns, rows in self._joined:
+            result[columns] = solver.multipliers(residual[rows], jumps[columns])
+        return result
+
+    @property
+    def _joined(self):
+        """Solvers of groups with joints, with their multipliers and rows."""
+        for group, (columns, rows) in enumerate(zip(self._columns, self._rows, strict=True)):
+            if len(columns):
+                yield self.of(group), columns, rows
+
+    def release(self) -> None:
+        """Free the memory of a factor that is not kept anyway."""
+        if self._alone:
+            self.destroy()
+
+    def destroy(self) -> None:
+        """Free the memory of the factors."""
+        while self._factors:
+            self._factors.popitem()[1].destroy()
 
 
 def return_freed_memory() -> None:

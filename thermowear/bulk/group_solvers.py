@@ -7,7 +7,7 @@ from petsc4py import PETSc
 import numpy as np
 import scipy.sparse as sp
 
-from .direct_solver import DirectSolver
+from .direct_solver import DirectSolver, GroupSolvers
 from .joints.joined_solver import JoinedSolver
 from .joints.joint import Border, Joints
 from .spaces import Rows, Spaces
@@ -28,8 +28,15 @@ def factorised(
     return DirectSolver(matrix, symmetry, dim)
 
 
-class GroupSolvers:
-    """Triangular factorisation of a matrix that does not couple groups of bodies.
+def group_solvers(
+    matrix: PETSc.Mat,
+    spaces: Spaces,
+    joints: Joints,
+    fixed: np.ndarray,
+    symmetry: str,
+    one_at_a_time: bool = False,
+) -> GroupSolvers:
+    """Triangular factorisation of a matrix that does not couple groups of bodies; collective.
 
     Parameters
     ----------
@@ -41,83 +48,18 @@ class GroupSolvers:
     symmetry : str
         See `DirectSolver`.
     one_at_a_time : bool
-        True if a factor is made when it is first needed, and freed before that of another group.
+        See `GroupSolvers`.
     """
+    rows = [spaces.rows(*bodies) for bodies in spaces.groups]
+    borders = [joints.border(*group) for group in zip(spaces.groups, rows, strict=True)]
+    blocks = [_diagonal_block(matrix, own) for own in rows]
+    assert sum(map(_entries, blocks)) == _entries(matrix), "the matrix couples bodies"
 
-    def __init__(
-        self,
-        matrix: PETSc.Mat,
-        spaces: Spaces,
-        joints: Joints,
-        fixed: np.ndarray,
-        symmetry: str,
-        one_at_a_time: bool = False,
-    ):
-        self._known, self._alone = (symmetry, spaces.dim), one_at_a_time
-        self._fixed, self._comm = fixed, spaces.comm
-        self._rows = [spaces.rows(*bodies) for bodies in spaces.groups]
-        self._borders = [
-            joints.border(*group) for group in zip(spaces.groups, self._rows, strict=True)
-        ]
-        self._blocks = [_diagonal_block(matrix, rows) for rows in self._rows]
-        assert sum(map(_entries, self._blocks)) == _entries(matrix), "the matrix couples bodies"
-        self._factors: dict[int, AnyFactor] = {}
-        if not one_at_a_time:
-            for group in range(len(self._rows)):
-                self.of(group)
+    def make(group: int) -> AnyFactor:
+        own = borders[group], fixed[rows[group]]
+        return factorised(blocks[group], *own, symmetry, spaces.dim)
 
-    def of(self, group: int) -> AnyFactor:
-        """Solver of one group. Every rank calls."""
-        if group not in self._factors:
-            self.release()
-            own = self._borders[group], self._fixed[self._rows[group]]
-            self._factors[group] = factorised(self._blocks[group], *own, *self._known)
-        return self._factors[group]
-
-    def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
-        """Solve for one or several right-hand sides, see `DirectSolver.solve`."""
-        result = np.empty(loads.shape, order="F")
-        for group, rows in enumerate(self._rows):
-            result[rows] = self.of(group).solve(loads[rows])
-        return result
-
-    def solve_transposed(self, loads: np.ndarray) -> np.ndarray:
-        """Solve with the transposed matrix; dense loads, shapes as in `solve`."""
-        result = np.empty(loads.shape, order="F")
-        for group, rows in enumerate(self._rows):
-            result[rows] = self.of(group).solve_transposed(loads[rows])
-        return result
-
-    def closing(self, jumps: np.ndarray) -> np.ndarray:
-        """Values without loads of given weak jumps, see `JoinedSolver.closing`."""
-        result = np.zeros(len(self._fixed))
-        for group, border, rows in self._joined:
-            result[rows] = group.closing(jumps[border.columns])
-        return result
-
-    def multipliers(self, residual: np.ndarray, jumps: np.ndarray) -> np.ndarray:
-        """Multipliers of all joints, see `JoinedSolver.multipliers`."""
-        result = np.zeros(len(jumps))
-        for group, border, rows in self._joined:
-            result[border.columns] = group.multipliers(residual[rows], jumps[border.columns])
-        return result
-
-    @property
-    def _joined(self):
-        """Solvers of groups with joints, with their borders and rows."""
-        for group, (border, rows) in enumerate(zip(self._borders, self._rows, strict=True)):
-            if border.count:
-                yield self.of(group), border, rows
-
-    def release(self) -> None:
-        """Free the memory of a factor that is not kept anyway."""
-        if self._alone:
-            self.destroy()
-
-    def destroy(self) -> None:
-        """Free the memory of the factors."""
-        while self._factors:
-            self._factors.popitem()[1].destroy()
+    return GroupSolvers(rows, [border.columns for border in borders], make, one_at_a_time)
 
 
 class SolverInGroup:

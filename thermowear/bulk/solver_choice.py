@@ -16,8 +16,9 @@ import numpy as np
 
 from ..errors import CaseError
 from .bodies import Bodies
+from .direct_solver import GroupSolvers
 from .field import reference_element
-from .group_solvers import AnyFactor, GroupSolvers, factorised
+from .group_solvers import AnyFactor, factorised, group_solvers
 from .joints.joint import NO_JOINTS, Joints
 from .multigrid_solver import MultigridSolver
 from .spaces import Spaces, groups_of
@@ -243,4 +244,4 @@ def linear_solver(
     if coupled or len(spaces.groups) == 1:
         border = joints.border(range(len(spaces.each)), slice(None))
         return factorised(matrix, border, fixed, symmetry, spaces.dim)
-    return GroupSolvers(matrix, spaces, joints, fixed, symmetry, choice.one_at_a_time)
+    return group_solvers(matrix, spaces, joints, fixed, symmetry, choice.one_at_a_time)

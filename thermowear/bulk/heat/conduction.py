@@ -15,9 +15,9 @@ import scipy.sparse as sp
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..direct_solver import multiply
+from ..direct_solver import GroupSolvers, multiply
 from ..field import without_fixed
-from ..group_solvers import GroupSolvers, solver_in_group
+from ..group_solvers import solver_in_group
 from ..joints.joined_solver import JoinedSolver
 from ..joints.joint import Joints
 from ..multigrid_solver import MultigridSolver

@@ -98,7 +98,7 @@ class Joints:
         """First multiplier of each joint, and their number at the end."""
         return np.cumsum([0, *(joint.count for joint in self.each)])
 
-    @property
+    @cached_property
     def count(self) -> int:
         """Number m of multipliers of all joints."""
         return int(self.starts[-1])

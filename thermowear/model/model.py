@@ -137,7 +137,9 @@ class Model:
     @property
     def is_pair(self) -> bool:
         """True for two bodies with one interface, of which the first one is held."""
-        return len(self.bodies) == 2 and len(self.interfaces) == len(self.holders) == 1
+        counts = len(self.bodies), len(self.interfaces), len(self.holders)
+        held = counts == (2, 1, 1) and self.holders[0].bodies == (0,)
+        return held and self.interfaces[0].bodies == (0, 1)
 
     @cached_property
     def interface(self) -> Interface:

@@ -33,7 +33,13 @@ from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
 from ..system.setup_cache import SetupCache, inputs
 from ..system.system import System
-from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
+from .checks import (
+    deep_wear,
+    inclined_faces,
+    moved_against_load,
+    open_contact,
+    require_support,
+)
 from .positioning import prepare
 from .static import initial, stability, steady
 from .transient import TransientHistory
@@ -127,6 +133,7 @@ def analyse(
             f"a {analysis.type} analysis does not support contact faces of several materials that "
             "wear by different laws"
         )
+    require_support(system)
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:
             observer.note(note)

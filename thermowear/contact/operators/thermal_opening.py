@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
+from mpi4py import MPI
 from petsc4py import PETSc
 
 import numpy as np
@@ -24,6 +26,8 @@ from .exchange_update import ChangedExchange
 from .face_nodes import FaceNodes
 from .heat_exchange import CoupledDistortion, HeatExchange, opened_by
 
+Columns: TypeAlias = "slice | np.ndarray"
+
 _STORED = 0.05
 """Part of the available memory that the response of all temperatures may take."""
 
@@ -36,8 +40,8 @@ class BodyColumns:
     ----------
     body : int
         Index of the body.
-    columns : slice
-        Range of pressure functions.
+    columns : slice or ndarray of int
+        Pressure functions.
     displacements : ndarray, shape (n_own, width)
         Displacements of the body [m per coefficient].
     per_rise : list of ndarray, shape (n_own of the temperature, width)
@@ -45,7 +49,7 @@ class BodyColumns:
     """
 
     body: int
-    columns: slice
+    columns: Columns
     displacements: np.ndarray
     per_rise: list[np.ndarray]
 
@@ -53,7 +57,9 @@ class BodyColumns:
 def elastic_columns(
     elastic: Elasticity, loads: sp.csc_matrix, matrices: Sequence[ThermalForces] = ()
 ) -> Iterator[BodyColumns]:
-    """Solve for sparse nodal loads (n_owned, m), body by body. Every rank calls.
+    """Solve for sparse nodal loads (n_owned, m), body by body, where they load a body.
+
+    Every rank calls.
 
     Parameters
     ----------
@@ -67,10 +73,22 @@ def elastic_columns(
         transposed = [matrix.each[index].transpose(PETSc.Mat()) for matrix in matrices]
         rows, by_columns = Spaces((body.space,)).total, sp.csc_matrix(own)
         with body.solver_of_columns() as solve:
-            for columns in blocks(loads.shape[1], elastic.bodies.dim, rows):
+            for columns in _loading(by_columns, elastic.bodies.comm, elastic.bodies.dim, rows):
                 displacements = solve(by_columns[:, columns].tocsr())
                 products = [_product(matrix, displacements) for matrix in transposed]
                 yield BodyColumns(index, columns, displacements, products)
+
+
+def _loading(loads: sp.csc_matrix, comm, dim: int, rows: int = 0) -> Iterator[Columns]:
+    """Blocks of the columns that load a body, on any rank; a body has those of its own contacts.
+
+    Every rank calls.
+    """
+    used = np.flatnonzero(comm.allreduce(np.diff(loads.indptr) > 0, MPI.LOR))
+    for block in blocks(len(used), dim, rows):
+        own = used[block]
+        first, end = int(own[0]), int(own[-1]) + 1
+        yield slice(first, end) if end - first == len(own) else own
 
 
 def _product(matrix: PETSc.Mat, columns: np.ndarray) -> np.ndarray:
@@ -158,8 +176,8 @@ class ThermalOpening:
 
     def by_columns(
         self, spaces: Spaces, slopes: Sequence[np.ndarray] = ()
-    ) -> Iterator[tuple[int, slice, np.ndarray]]:
-        """Weak gap per nodal rise of a body (n_own, width), with the range of pressure functions.
+    ) -> Iterator[tuple[int, Columns, np.ndarray]]:
+        """Weak gap per nodal rise of a body (n_own, width), with its pressure functions.
 
         The rises of the matrices after the first are `slopes` (n_owned,) times that of the first.
         Every rank calls.
@@ -172,8 +190,9 @@ class ThermalOpening:
         """
         slopes_in = list(zip(*map(spaces.split, slopes), strict=True)) or [()] * len(spaces.each)
         if self.per_rise:
+            loads, bodies = self.elastic.spaces.split(self.loads.tocsr()), self.elastic.bodies
             for index, split in enumerate(zip(*map(spaces.split, self.per_rise), strict=True)):
-                for columns in blocks(self.loads.shape[1], self.elastic.bodies.dim):
+                for columns in _loading(sp.csc_matrix(loads[index]), bodies.comm, bodies.dim):
                     parts = [response[:, columns] for response in split]
                     yield index, columns, _combined(parts, slopes_in[index])
             return
@@ -229,21 +248,29 @@ class DistortionRows:
     """
 
     def __init__(self, conduction: Conduction, nodes: tuple[FaceNodes, ...], count: int):
-        self._conduction, self._nodes, self._count = conduction.for_columns(), nodes, count
+        self._conduction, self._nodes = conduction.for_columns(), nodes
         self._bodies = [conduction.spaces.body_of(own.rows) for own in nodes]
-        self.distortion = ThermalDistortion(tuple(np.zeros((count, n.count)) for n in nodes))
+        self._per_heat = tuple(np.zeros((count, n.count)) for n in nodes)
+        self._last = -1
 
-    def add(self, body: int, columns: slice, per_rise: np.ndarray) -> None:
-        """Add the rows of a block from the weak gap per nodal rise of a body, (n_own, width)."""
+    def add(self, body: int, columns: Columns, per_rise: np.ndarray) -> None:
+        """Add the rows of a block from the weak gap per nodal rise of a body, (n_own, width).
+
+        Blocks follow body by body.
+        """
+        if body != self._last:
+            self._conduction.release()
+        self._last = body
         adjoint, spaces = self._conduction.in_body(body).adjoint_response(per_rise), self._spaces
-        for own, nodes, rows in zip(
-            self._bodies, self._nodes, self.distortion.per_heat, strict=True
-        ):
+        for own, nodes, rows in zip(self._bodies, self._nodes, self._per_heat, strict=True):
             if own == body:
                 at_face = adjoint[nodes.rows - spaces.starts[body]]
                 rows[columns] += np.vstack(spaces.comm.allgather(at_face)).T
-        if columns.stop == self._count:  # the body is done
-            self._conduction.release()
+
+    def finish(self) -> ThermalDistortion:
+        """Distortion by all blocks that have been added."""
+        self._conduction.release()
+        return ThermalDistortion(self._per_heat)
 
     @property
     def _spaces(self) -> Spaces:
@@ -260,4 +287,4 @@ def condense_distortion(
     rows = DistortionRows(conduction, nodes, opening.loads.shape[1])
     for body, columns, per_rise in opening.by_columns(conduction.spaces, slopes):
         rows.add(body, columns, per_rise)
-    return rows.distortion
+    return rows.finish()

@@ -6,6 +6,7 @@ import contextlib
 import io
 import json
 import math
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -99,7 +100,11 @@ def summary_of(folder: Path) -> dict:
 # ---- the starter cases ----
 
 
-@pytest.fixture(scope="module", params=list(starters()))
+PAIRS = [name for name in starters() if "holders" not in tomllib.loads(starter_text(name))]
+"""Starters of two bodies; those of more are in `test_assemblies`."""
+
+
+@pytest.fixture(scope="module", params=PAIRS)
 def finished(request, tmp_path_factory):
     """Starter case by name, and the results folder of a coarse run."""
     name = request.param

@@ -129,9 +129,10 @@ def influence(
         bodies = spaces.groups[found.group]
         inside = np.flatnonzero(np.isin(body, bodies))
         rows = spaces.within(found.group, touching[inside])
-        near[inside, found.columns] = found.displacements[rows]
+        columns = np.r_[found.columns]
+        near[np.ix_(inside, columns)] = found.displacements[rows]
         for matrix, products, product in zip(kept, per_rise, found.per_rise, strict=False):
-            products[matrix.columns.rows(*bodies), found.columns] = product
+            products[np.ix_(np.r_[matrix.columns.rows(*bodies)], columns)] = product
         if distortion is not None:
             distortion.add(found.group, found.columns, found.per_rise[0])
     comm = elastic.bodies.comm

@@ -8,7 +8,8 @@ from typing import TypeAlias
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg.lapack import dgetrf
+from scipy.linalg.lapack import dgetrf, dgetrs
+from scipy.sparse.linalg import splu
 
 from ...errors import ComputationError
 from .heat import NO_HEAT_SINK
@@ -21,6 +22,8 @@ _MAX_DIRECT_RATIO = 10.0
 _MAX_DIRECT_CONTRAST = 1e4
 """Largest conductance treated point by point, relative to that of the less conducting body: the
 rounding error of equal temperatures, times the conductance, is heat that enters this body."""
+_PAIR = 2
+"""Number of bodies up to which the matrices of the exchange are dense."""
 
 Division: TypeAlias = "tuple[np.ndarray, np.ndarray, np.ndarray]"
 """Parts of a conductance at the points, see `divided`."""
@@ -142,10 +145,10 @@ def node_ranges(counts: Sequence[int]) -> list[slice]:
     return [slice(int(a), int(b)) for a, b in pairwise([0, *np.cumsum(counts)])]
 
 
-def factorised(
-    coupling: sp.csr_array, response: Sequence[np.ndarray]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Triangular factors with pivots of the unknowns: ``I - Φ N``, and ``-N`` of the jumps.
+class ExchangeFactor:
+    """Triangular factors of the unknowns: ``I - Φ N``, and ``-N`` of the jumps.
+
+    Bodies are coupled to their neighbours only: the factors of several pairs are sparse.
 
     Parameters
     ----------
@@ -159,6 +162,32 @@ def factorised(
     ComputationError
         If a heated body has no heat sink.
     """
+
+    def __init__(self, coupling: sp.csr_array, response: Sequence[np.ndarray]):
+        self._sparse, self._dense = None, None
+        if len(response) > _PAIR:
+            self._sparse = _sparse_factor(coupling, response)
+        else:
+            self._dense = _dense_factor(coupling, response)
+
+    def solve(self, right: np.ndarray, transposed: bool = False) -> np.ndarray:
+        """Solutions for right-hand sides, by columns."""
+        if self._sparse is not None:
+            return self._sparse.solve(right, "T" if transposed else "N")
+        return dgetrs(*self._dense, right, trans=int(transposed))[0].reshape(right.shape)
+
+
+def _sparse_factor(coupling: sp.csr_array, response: Sequence[np.ndarray]):
+    end = sum(len(Φ) for Φ in response)
+    coupled = sp.block_diag(response, format="csr") @ coupling[:end]
+    lines = sp.eye_array(end, coupling.shape[1], format="csr") - coupled
+    try:
+        return splu(sp.csc_matrix(sp.vstack([lines, -coupling[end:]])))
+    except RuntimeError:  # exactly singular
+        raise ComputationError(NO_HEAT_SINK) from None
+
+
+def _dense_factor(coupling: sp.csr_array, response: Sequence[np.ndarray]):
     end = sum(len(Φ) for Φ in response)
     matrix = np.empty(coupling.shape, order="F")
     for rows, Φ in zip(node_ranges([len(Φ) for Φ in response]), response, strict=True):

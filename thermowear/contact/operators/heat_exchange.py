@@ -14,14 +14,13 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg.lapack import dgetrs
 
 from ...parallel import sum_over_ranks
 from .exchange_matrix import (
     Division,
+    ExchangeFactor,
     coupling_matrix,
     divided,
-    factorised,
     jump_scale,
     node_ranges,
     scaled_functions,
@@ -170,7 +169,7 @@ class HeatExchange:
         self.coupling = coupling_matrix(
             face.weights, functions, face.values, self.division, face.shifts
         )
-        self._factor = factorised(self.coupling, face.response)
+        self._factor = ExchangeFactor(self.coupling, face.response)
 
     @cached_property
     def _crossing(self) -> sp.csr_array:
@@ -228,14 +227,13 @@ class HeatExchange:
 
     def response(self, loads: np.ndarray) -> np.ndarray:
         """Unknowns ``x = G b`` by loads b, by columns."""
-        found, _ = dgetrs(*self._factor, self._risen(self.face.response, loads))
-        return found.reshape(loads.shape)
+        return self._factor.solve(self._risen(self.face.response, loads))
 
     def transposed_response(self, values: np.ndarray) -> np.ndarray:
         """Products ``Gᵀ values``, by columns."""
         if self.face.responses.symmetric:
             return self.response(values)
-        adjoint = dgetrs(*self._factor, values, trans=1)[0]
+        adjoint = self._factor.solve(values, transposed=True)
         return self._risen([Φ.T for Φ in self.face.response], adjoint)
 
     def _risen(self, response: Sequence[np.ndarray], loads: np.ndarray) -> np.ndarray:

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
+from mpi4py import MPI
 from petsc4py import PETSc
 
 import numpy as np
@@ -24,6 +26,8 @@ from .exchange_update import ChangedExchange
 from .face_nodes import FaceNodes
 from .heat_exchange import CoupledDistortion, HeatExchange, opened_by
 
+Columns: TypeAlias = "slice | np.ndarray"
+
 _STORED = 0.05
 """Part of the available memory that the response of all temperatures may take."""
 
@@ -36,8 +40,8 @@ class GroupColumns:
     ----------
     group : int
         Index of the group.
-    columns : slice
-        Range of pressure functions.
+    columns : slice or ndarray of int
+        Pressure functions.
     displacements : ndarray, shape (n_own, width)
         Displacements of the group [m per coefficient].
     per_rise : list of ndarray, shape (n_own of the temperature, width)
@@ -45,7 +49,7 @@ class GroupColumns:
     """
 
     group: int
-    columns: slice
+    columns: Columns
     displacements: np.ndarray
     per_rise: list[np.ndarray]
 
@@ -53,7 +57,9 @@ class GroupColumns:
 def elastic_columns(
     elastic: Elasticity, loads: sp.csc_matrix, matrices: Sequence[ThermalForces] = ()
 ) -> Iterator[GroupColumns]:
-    """Solve for sparse nodal loads (n_owned, m), group by group. Every rank calls.
+    """Solve for sparse nodal loads (n_owned, m), group by group, where they load a group.
+
+    Every rank calls.
 
     Parameters
     ----------
@@ -62,14 +68,15 @@ def elastic_columns(
     matrices : sequence of ThermalForces
         Thermal load matrices.
     """
-    by_rows = loads.tocsr()
+    by_rows, bodies_of = loads.tocsr(), elastic.bodies
     for index, (group, bodies) in enumerate(
         zip(elastic.groups, elastic.spaces.groups, strict=True)
     ):
         transposed = [[m.each[k].transpose(PETSc.Mat()) for k in bodies] for m in matrices]
         by_columns = sp.csc_matrix(by_rows[elastic.spaces.rows(*bodies)])
+        size = bodies_of.dim, group.spaces.total
         with group.solver_of_columns() as solve:
-            for columns in blocks(loads.shape[1], elastic.bodies.dim, group.spaces.total):
+            for columns in _loading(by_columns, bodies_of.comm, *size):
                 displacements = solve(by_columns[:, columns].tocsr())
                 split = group.spaces.split(displacements)
                 products = [
@@ -77,6 +84,18 @@ def elastic_columns(
                     for each in transposed
                 ]
                 yield GroupColumns(index, columns, displacements, products)
+
+
+def _loading(loads: sp.csc_matrix, comm, dim: int, rows: int = 0) -> Iterator[Columns]:
+    """Blocks of the columns that load a body, on any rank; a body has those of its own contacts.
+
+    Every rank calls.
+    """
+    used = np.flatnonzero(comm.allreduce(np.diff(loads.indptr) > 0, MPI.LOR))
+    for block in blocks(len(used), dim, rows):
+        own = used[block]
+        first, end = int(own[0]), int(own[-1]) + 1
+        yield slice(first, end) if end - first == len(own) else own
 
 
 def _product(matrix: PETSc.Mat, columns: np.ndarray) -> np.ndarray:
@@ -164,8 +183,8 @@ class ThermalOpening:
 
     def by_columns(
         self, spaces: Spaces, slopes: Sequence[np.ndarray] = ()
-    ) -> Iterator[tuple[int, slice, np.ndarray]]:
-        """Weak gap per nodal rise of a group (n_own, width), with the range of pressure functions.
+    ) -> Iterator[tuple[int, Columns, np.ndarray]]:
+        """Weak gap per nodal rise of a group (n_own, width), with its pressure functions.
 
         The rises of the matrices after the first are `slopes` (n_owned,) times that of the first.
         Every rank calls.
@@ -179,9 +198,12 @@ class ThermalOpening:
         rows = [spaces.rows(*bodies) for bodies in self.elastic.spaces.groups]
         slopes_in = [[slope[own] for slope in slopes] for own in rows]
         if self.per_rise:
+            loads, bodies = self.loads.tocsr(), self.elastic.bodies
+            of_loads = [self.elastic.spaces.rows(*own) for own in self.elastic.spaces.groups]
             for group, own in enumerate(rows):
-                for columns in blocks(self.loads.shape[1], self.elastic.bodies.dim):
-                    parts = [response[own, columns] for response in self.per_rise]
+                by_columns = sp.csc_matrix(loads[of_loads[group]])
+                for columns in _loading(by_columns, bodies.comm, bodies.dim):
+                    parts = [response[own][:, columns] for response in self.per_rise]
                     yield group, columns, _combined(parts, slopes_in[group])
             return
         for found in elastic_columns(self.elastic, self.loads, self.matrices[: 1 + len(slopes)]):
@@ -236,20 +258,29 @@ class DistortionRows:
     """
 
     def __init__(self, conduction: Conduction, nodes: tuple[FaceNodes, ...], count: int):
-        self._conduction, self._nodes, self._count = conduction.for_columns(), nodes, count
+        self._conduction, self._nodes = conduction.for_columns(), nodes
         self._groups = [conduction.spaces.group_of(own.rows) for own in nodes]
-        self.distortion = ThermalDistortion(tuple(np.zeros((count, n.count)) for n in nodes))
+        self._per_heat = tuple(np.zeros((count, n.count)) for n in nodes)
+        self._last = -1
 
-    def add(self, group: int, columns: slice, per_rise: np.ndarray) -> None:
-        """Add the rows of a block from the weak gap per nodal rise of a group, (n_own, width)."""
+    def add(self, group: int, columns: Columns, per_rise: np.ndarray) -> None:
+        """Add the rows of a block from the weak gap per nodal rise of a group, (n_own, width).
+
+        Blocks follow group by group.
+        """
+        if group != self._last:
+            self._conduction.release()
+        self._last = group
         adjoint, spaces = self._conduction.in_group(group).adjoint_response(per_rise), self._spaces
-        each = zip(self._groups, self._nodes, self.distortion.per_heat, strict=True)
-        for own, nodes, rows in each:
+        for own, nodes, rows in zip(self._groups, self._nodes, self._per_heat, strict=True):
             if own == group:
                 at_face = adjoint[spaces.within(group, nodes.rows)]
                 rows[columns] += np.vstack(spaces.comm.allgather(at_face)).T
-        if columns.stop == self._count:  # the group is done
-            self._conduction.release()
+
+    def finish(self) -> ThermalDistortion:
+        """Distortion by all blocks that have been added."""
+        self._conduction.release()
+        return ThermalDistortion(self._per_heat)
 
     @property
     def _spaces(self) -> Spaces:
@@ -266,4 +297,4 @@ def condense_distortion(
     rows = DistortionRows(conduction, nodes, opening.loads.shape[1])
     for group, columns, per_rise in opening.by_columns(conduction.spaces, slopes):
         rows.add(group, columns, per_rise)
-    return rows.distortion
+    return rows.finish()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...errors import ComputationError
+from ...errors import CaseError, ComputationError
 from ...model.analyses import (
     Analysis,
     FrettingAnalysis,
@@ -23,6 +23,31 @@ _BACK = 1e-9
 """Rounding tolerance of the position, relative to the size of the face."""
 _STEEP = -0.75
 """Largest cosine between the outward normals where faces press; up to -0.5 they are paired."""
+_NO_CLOSURE = 1e-9
+"""Relative closure of the gap, below which a motion counts as one that no contact resists."""
+
+
+def require_support(system: System) -> None:
+    """Reject several bodies whose holders can move together without closing any gap.
+
+    Raises
+    ------
+    CaseError
+    """
+    modes = system.holder.modes
+    if system.model.is_pair or not modes.shape[1]:
+        return
+    sizes = np.linalg.norm(modes, axis=0)
+    sizes[sizes == 0.0] = 1.0
+    values, directions = np.linalg.eigh(modes.T @ modes / np.outer(sizes, sizes))
+    if values[0] > _NO_CLOSURE:
+        return
+    names = np.array([f"{h.name} ({name})" for h in system.model.holders for name in h.free])
+    moving = names[system.holder.free][np.abs(directions[:, 0]) > 0.1 / len(sizes)]
+    raise CaseError(
+        f"holders: the free motions {', '.join(moving)} together close no gap, so that nothing "
+        "carries their loads; fix one of these holders (free = []), or give its approach"
+    )
 
 
 def moved_against_load(

@@ -32,7 +32,13 @@ from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
 from ..system.setup_cache import SetupCache, inputs
 from ..system.system import System
-from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
+from .checks import (
+    deep_wear,
+    inclined_faces,
+    moved_against_load,
+    open_contact,
+    require_support,
+)
 from .positioning import prepare
 from .static import initial, stability, steady
 from .transient import TransientHistory
@@ -122,6 +128,7 @@ def analyse(
             f"there are: {', '.join(_OF_SEVERAL)}"
         )
     system = wearing_faces(system, analysis, observer)
+    require_support(system)
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:
             observer.note(note)

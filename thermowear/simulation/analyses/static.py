@@ -90,7 +90,7 @@ def wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, Any]
         if velocity is not None:
             pairs = zip(holder.free, velocity[modes], strict=True)
             own |= {_VELOCITIES[name]: float(value) for name, value in pairs}
-    return dict(found[""]) if system.model.is_pair else {"holders": found}
+    return found[system.model.holder.name] if system.model.is_pair else {"holders": found}
 
 
 def stability(system: System, observer: Observer) -> tuple[Snapshot, Result]:

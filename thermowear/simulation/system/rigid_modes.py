@@ -24,7 +24,7 @@ _TURNS = {
     "rotation": (0.0, 0.0, 1.0),
 }
 _GUIDED = {
-    "axisymmetric": (),
+    "axisymmetric": ("z",),
     "3d": ("x", "y", "z", "rotation-x", "rotation-y"),
     "plane-strain": ("x", "z", "rotation"),
     "plane-stress": ("x", "z", "rotation"),
@@ -67,7 +67,7 @@ def rigid_modes(
 def guides(kinematics: str, holder: Holder) -> dict[str, RigidMotion]:
     """Rigid motions by name, conjugate to the guide forces and moments on a holder.
 
-    Along x (and y), upwards, and about the pivot; none in an axisymmetric model.
+    Along x (and y), upwards, and about the pivot; upwards only in an axisymmetric model.
     """
     up = translation((0.0, 0.0, 1.0) if kinematics == "3d" else (0.0, 1.0))
     return {name: up if name == "z" else _motion(holder, name) for name in _GUIDED[kinematics]}
@@ -76,14 +76,16 @@ def guides(kinematics: str, holder: Holder) -> dict[str, RigidMotion]:
 def load_direction(model: Model, interface: Interface, pairing: Pairing) -> np.ndarray:
     """Unit vector along which the first body of an interface is pressed, shape (gdim,).
 
-    Load direction of its holder, else the opposite of that of the second body; without a holder
-    that can be pressed, the mean normal.
+    Load direction of its holder, else the opposite of that of the second body, of several bodies
+    with the sense of the mean normal: a body that floats is pressed from both sides. Without a
+    holder that can be pressed, the mean normal.
     """
+    mean = pairing.weights @ pairing.normals
     for sign, body in zip((1.0, -1.0), interface.bodies, strict=True):
         for holder in model.holders:
             if body in holder.bodies and holder.free:
-                return sign * np.array(holder.load_direction)
-    mean = pairing.weights @ pairing.normals
+                direction = sign * np.array(holder.load_direction)
+                return direction if model.is_pair or direction @ mean >= 0.0 else -direction
     return mean / np.linalg.norm(mean)
 
 

@@ -237,7 +237,7 @@ class System:
             return influence(*bodies, loads)
         rows = DistortionRows(*self.thermal.condensed, self.basis.shape[1])
         found = influence(*bodies, loads, rows)
-        self.parts.get("distortion", self.inputs.conduction, lambda: rows.distortion)
+        self.parts.get("distortion", self.inputs.conduction, rows.finish)
         return found
 
     @cached_property

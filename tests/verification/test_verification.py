@@ -19,7 +19,7 @@ LONG = SLOW | {
     "half-plane-instability", "hertz-elliptical", "hertz-line", "methods-agree", "mindlin",
     "minimality", "moving-band", "optimal-shape", "pad-disk-pad", "patch", "pin-on-disk-3d",
     "pressure-conductance", "reciprocating", "ring-3d", "running-in", "sliding-rod", "step-flux",
-    "temperature-dependent", "two-slabs",
+    "temperature-dependent", "two-shoes", "two-slabs",
 }  # fmt: skip
 """Cases of more than three seconds; run by `make verify`."""
 

@@ -32,7 +32,6 @@ def _names(case: AssemblyCase) -> Iterator[Fault]:
     if case.model not in geometry.models:
         yield "model", f"{case.model!r} does not fit; allowed: {', '.join(geometry.models)}"
     bodies: dict[str, object] = {
-        "bodies": case.bodies,
         "wear": case.wear,
         "motions": case.motions,
         "mesh.bodies": case.mesh.bodies,
@@ -41,6 +40,9 @@ def _names(case: AssemblyCase) -> Iterator[Fault]:
         for name in names:  # type: ignore[attr-defined]
             if name not in geometry.bodies:
                 yield f"{table}.{name}", _unknown(geometry.bodies)
+    for name in case.bodies:
+        if name not in geometry.parts:
+            yield f"bodies.{name}", _unknown(geometry.parts)
     for name in geometry.bodies:
         if name not in case.bodies:
             yield f"bodies.{name}", "missing; every body of the geometry needs a material"
@@ -101,6 +103,16 @@ def _is_number(name: str) -> bool:
     return True
 
 
+def _supports(case: AssemblyCase) -> Iterator[Fault]:
+    """Supports are surfaces of their own body."""
+    for name, body in case.bodies.items():
+        for key in ("fixed", "rollers", "mid_plane"):
+            for surface in getattr(body, key):
+                owner = case.geometry.body_of(surface)
+                if owner != name:
+                    yield f"bodies.{name}.{key}", f"{surface!r} is a surface of {owner}"
+
+
 def _holders(case: AssemblyCase) -> Iterator[Fault]:
     """Every body has one holder, or supports; somewhere it is pressed."""
     holders = dict[str, str]()
@@ -122,9 +134,12 @@ def _holders(case: AssemblyCase) -> Iterator[Fault]:
             holders[body] = name
             if case.bodies[body].fixed:
                 yield f"bodies.{body}.fixed", f"{body} is on holders.{name}"
-    loads = [h.force or h.approach or h.history for h in case.holders.values()]
+    loads = [
+        h.force or h.approach or h.closing_moment or any(h.moments or ()) or h.history
+        for h in case.holders.values()
+    ]
     if not any(loads) and not case.load.pressure and case.heat is None:
-        yield "holders", "nothing is pressed: one of them needs a force or an approach"
+        yield "holders", "nothing is pressed: one of them needs a force, a moment or an approach"
 
 
 def _analysis(case: AssemblyCase) -> Iterator[Fault]:
@@ -168,13 +183,6 @@ def _wear(case: AssemblyCase) -> Iterator[Fault]:
 
 def _materials(case: AssemblyCase) -> Iterator[Fault]:
     """All properties that the analysis requires."""
-    needed = {"young_modulus": "", "poisson_ratio": ""}
-    heat = case.heat
-    if heat is not None:
-        why = " because the case has a [heat] table"
-        needed |= {"conductivity": why, "expansion": why}
-        if heat.transient:
-            needed |= dict.fromkeys(("density", "specific_heat"), " because of heat.transient")
     missing = dict[str, str]()
     for part in case.geometry.parts:
         try:
@@ -182,10 +190,24 @@ def _materials(case: AssemblyCase) -> Iterator[Fault]:
         except ValueError as error:
             yield f"bodies.{part}.like", str(error)
             continue
-        for key, why in needed.items():
+        for key, why in _needed(case, part).items():
             if getattr(material, key) is None:
                 missing[f"{path}.{key}"] = f"missing; needed{why}"
     yield from missing.items()
+
+
+def _needed(case: AssemblyCase, part: str) -> dict[str, str]:
+    """Properties that a part must have, and why."""
+    needed, storing = {"young_modulus": "", "poisson_ratio": ""}, ("density", "specific_heat")
+    heat = case.heat
+    if heat is None:
+        return needed
+    needed |= dict.fromkeys(("conductivity", "expansion"), " because the case has a [heat] table")
+    if heat.transient:
+        needed |= dict.fromkeys(storing, " because of heat.transient")
+    elif heat.advection == "resolved" and case.geometry.zones.get(part, part) in case.motions:
+        needed |= dict.fromkeys(storing, ' because heat.advection is "resolved"')
+    return needed
 
 
 def _heat(case: AssemblyCase) -> Iterator[Fault]:
@@ -203,8 +225,15 @@ def _heat(case: AssemblyCase) -> Iterator[Fault]:
         yield "heat", "needs heat.cooling or heat.temperature: there is no heat sink"
     if heat.transient and case.analysis.type != "transient":
         yield "heat.transient", f"requires a transient analysis, not {case.analysis.type}"
-    if heat.advection != "none" and case.model != "3d":
-        yield "heat.advection", "is for a body in space that passes under others"
+    passing = [motion for motion in case.motions.values() if not motion.across]
+    if heat.advection != "none" and (case.model == "axisymmetric" or len(passing) != 1):
+        yield (
+            "heat.advection",
+            "is for one moving body that passes the others in the model, as a drum or a strip does",
+        )
+    elif heat.advection == "resolved" and passing[0].history is not None:
+        text = '"resolved" needs a constant speed, without a history: use "spread" or "none"'
+        yield "heat.advection", text
 
 
-_CHECKS = (_contacts, _analysis, _holders, _motions, _wear, _materials, _heat)
+_CHECKS = (_contacts, _supports, _analysis, _holders, _motions, _wear, _materials, _heat)

@@ -94,6 +94,10 @@ class AssemblyGeometry(Section):
         """Unit vector along which a holder of a surface presses unless it says otherwise."""
         return (0.0, -1.0)
 
+    def pivot(self, surface: str) -> tuple[float, ...] | None:
+        """Centre of rotation of a holder of a surface by default; None: the origin."""
+        return None
+
     @abstractmethod
     def build(self, mesh) -> Any:
         """Mesh all bodies.

@@ -71,9 +71,13 @@ class AssemblyHolderTable(Section):
     direction : tuple of float or None
         Load direction, the motion ``"z"``, by default into the body in a stack, else downwards.
     point, pivot : tuple of float or None
-        Point of application of the force and centre of rotations, by default the origin [m].
+        Point of application of the force, by default the pivot, and centre of rotations, by default
+        that of the geometry, else the origin [m].
     moments : tuple of float or None
         Moments about x, y and z through the pivot; in a section the last one counts [N m].
+    closing_moment : float or None
+        Moment about the pivot, positive where it closes the contacts of the holder, for one that
+        can only rotate in the section; instead of other loads [N m].
     """
 
     surface: Names
@@ -83,6 +87,7 @@ class AssemblyHolderTable(Section):
     approach: units.Length | None = None
     tangential_force: units.SignedForce | None = None
     moments: tuple[units.SignedMoment, units.SignedMoment, units.SignedMoment] | None = None
+    closing_moment: units.SignedMoment | None = None
     point: tuple[units.Coordinate, ...] | None = None
     pivot: tuple[units.Coordinate, ...] | None = None
     history: History | None = None
@@ -96,6 +101,11 @@ class AssemblyHolderTable(Section):
         if self.approach is not None and "z" not in self.free:
             raise KeyFault("approach", 'needs the motion "z" in free')
         loads = self.force, self.tangential_force, self.moments, self.history
+        if self.closing_moment is not None:
+            if self.free != ("rotation",):
+                raise KeyFault("closing_moment", 'needs free = ["rotation"]')
+            if any(load is not None for load in loads):
+                raise KeyFault("closing_moment", "cannot be given together with other loads")
         if not self.free and any(load is not None for load in loads):
             raise KeyFault("free", "is empty: a fixed holder takes no loads")
         if self.direction is not None and not any(self.direction):

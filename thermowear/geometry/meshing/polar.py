@@ -6,6 +6,7 @@ Angles are measured from the vertical, positive towards +x [rad].
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,20 +95,20 @@ class Division:
 
     def all_round(self) -> np.ndarray:
         """Angles of the element ends around the whole circle, starting with the face."""
-        steps = np.diff(self.angles)
-        left, right = self._beside(steps[0]), self._beside(steps[-1])
-        outside = np.cumsum(np.concatenate([right, left[::-1]]))
-        angles = np.concatenate([self.angles, self.angles[-1] + outside])
-        angles[-1] = self.angles[0] + 2 * math.pi
-        return angles
+        return all_round([self])
 
-    def _beside(self, edge: float) -> np.ndarray:
-        """Angles of elements from an end of the face to the point opposite to the face.
+    def beside(self, edge: float, room: float) -> np.ndarray:
+        """Angles of elements from an end of the face to the middle of the arc beside it.
 
         They start as wide as the last one on the face and grow by `QUICKLY` to the widest there.
+
+        Parameters
+        ----------
+        edge : float
+            Angle of the last element on the face [rad].
+        room : float
+            Half the angle of the arc [rad].
         """
-        first, last = self.span
-        room = math.pi - (last - first) / 2
         widest = min(float(np.diff(self.angles).max()), _WIDEST)
         quick: list[float] = []
         size = min(edge, widest)
@@ -144,6 +145,25 @@ class Division:
             layers.append(depth + rows)
             depth, size = depth + thickness, border
         return layers
+
+
+def all_round(faces: Sequence[Division]) -> np.ndarray:
+    """Angles of the element ends around the whole circle, starting with the first face.
+
+    Parameters
+    ----------
+    faces : sequence of Division
+        Faces on the circle, clockwise, with gaps between them.
+    """
+    first, parts = float(faces[0].angles[0]), []
+    for face, following in zip(faces, [*faces[1:], faces[0]], strict=True):
+        room = (following.span[0] - face.span[1]) % (2 * math.pi) / 2
+        right = face.beside(float(np.diff(face.angles)[-1]), room)
+        left = following.beside(float(np.diff(following.angles)[0]), room)
+        outside = face.angles[-1] + np.cumsum(np.concatenate([right, left[::-1]]))
+        turned = first + (face.span[0] - first) % (2 * math.pi) - face.span[0]
+        parts.append(np.concatenate([face.angles, outside[:-1]]) + turned)
+    return np.append(np.concatenate(parts), first + 2 * math.pi)
 
 
 def complete(

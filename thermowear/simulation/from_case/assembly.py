@@ -178,7 +178,7 @@ def _holder(case: AssemblyCase, name: str, table: AssemblyHolderTable) -> dict:
     geometry, history = case.geometry, table.history
     dim = 3 if case.model == "3d" else 2
     direction = np.array(table.direction or geometry.press_direction(table.surface[0]), dtype=float)
-    pivot = table.pivot or (0.0,) * dim
+    pivot = table.pivot or geometry.pivot(table.surface[0]) or (0.0,) * dim
     maxima = {
         key: max(course) if history is not None and (course := getattr(history, key)) else given
         for key, given in (("force", table.force), ("approach", table.approach))
@@ -192,6 +192,7 @@ def _holder(case: AssemblyCase, name: str, table: AssemblyHolderTable) -> dict:
         "free": table.free,
         "tangential_force": table.tangential_force or 0.0,
         "moments": table.moments or (0.0, 0.0, 0.0),
+        "closing_moment": table.closing_moment,
         "history": None if history is None else history.loads,
         **maxima,
     }

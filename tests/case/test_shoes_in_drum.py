@@ -45,7 +45,7 @@ def test_contacts_are_those_of_the_geometry():
     assert [one.name for one in model.interfaces] == ["right_shoe", "left_shoe"]
     assert [one.bodies for one in model.interfaces] == [(0, 2), (1, 2)]
     assert all(one.motion.center == (0.0, 0.0) for one in model.interfaces)
-    assert all(one.motion.angular_velocity == -0.2 for one in model.interfaces)
+    assert all(one.motion.angular_velocity == -2.0 for one in model.interfaces)
 
 
 @pytest.mark.parametrize(

@@ -87,7 +87,7 @@ def test_contacts_are_those_of_the_geometry():
             {"geometry.shoes.right_shoe.arc_end": "170 deg"},
             "geometry.shoes.right_shoe.pivot: lies at 155.943 deg clockwise",
         ),
-        ({"wear.drum": {"coefficient": "1e-9 1/MPa", "spread": "track"}}, "wear.drum.spread"),
+        ({"wear.left_shoe.spread": "track"}, "wear.left_shoe.spread: is for rings that pass"),
     ],
 )
 def test_faults_name_their_keys(changes, line):

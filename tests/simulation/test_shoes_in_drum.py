@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 import thermowear as tw
 from thermowear.errors import CaseError, ComputationError
@@ -85,6 +86,76 @@ def test_a_moment_acts_as_the_force_at_its_arm(shoe):
     result = tw.run(tw.load(tables(SHOES, COLD | moment)))
     _, expected = steady("right_shoe")
     assert torques(result) == pytest.approx(torques(expected), rel=1e-9)
+
+
+TRACK = COLD | {
+    "wear.right_shoe": {"coefficient": "1e-7 1/MPa", "per": "pressure"},
+    "wear.left_shoe": {"coefficient": "1e-7 1/MPa", "per": "pressure"},
+    "wear.drum": {"coefficient": "4e-8 1/MPa", "per": "pressure", "spread": "track"},
+    "motions.drum.angular_velocity": "-0.2 rad/s",
+}
+"""Shoes that wear in place, and the drum evenly all round."""
+
+
+def shoes_and_worn_drum(case) -> tuple[float, dict[str, tuple[float, float]]]:
+    """Wear rate of the drum [m/s], and torque and largest pressure of each shoe.
+
+    Where a shoe presses, ``k_1 p v + S = Ω a sin θ``, with the rotation Ω that the moment of its
+    force needs, and ``S = k_2 v / 2 π Σ ∫ p dθ`` over both shoes.
+    """
+    k_1, k_2, speed, mu = 1e-13, 4e-14, 0.2 * 0.15, 0.32
+    θ = (np.arange(20000) + 0.5) / 20000 * np.radians(126.0)
+    dθ = θ[1] - θ[0]
+    laws = {shoe: long_shoe(case, shoe, shoe == "right_shoe") for shoe in case.holders}
+
+    def pressure(shoe: str, even: float) -> np.ndarray:
+        law, largest = laws[shoe]
+        arm = law.pivot_distance * np.sin(θ)
+        turned = law.radius - law.pivot_distance * np.cos(θ)
+        wanted = largest * law.actuating_moment(1.0)
+
+        def found(Ω):
+            return np.maximum((Ω * arm - even) / (k_1 * speed), 0.0)
+
+        def excess(Ω):
+            moment = found(Ω) @ (arm + law.friction * turned) * dθ * law.width * law.radius
+            return moment / wanted - 1.0
+
+        typical = k_1 * speed * largest / law.pivot_distance
+        return found(brentq(excess, 0.5 * typical, 10 * typical, xtol=1e-14 * typical))
+
+    def unlike(even):
+        return even - k_2 * speed / (2 * np.pi) * sum(pressure(s, even).sum() * dθ for s in laws)
+
+    even = brentq(unlike, 0.0, k_2 * speed * 1e6, xtol=1e-22)
+    each = {shoe: pressure(shoe, even) for shoe in laws}
+    torque = mu * case.geometry.thickness * 0.15**2 * dθ
+    return even, {shoe: (torque * p.sum(), p.max()) for shoe, p in each.items()}
+
+
+def test_both_shoes_wear_the_whole_drum():
+    """requirement: the drum wears by the sum of both shoes, evenly; pressures by closed forms."""
+    case = tw.load(tables(SHOES, TRACK | {"mesh.elements": 32, "mesh.degree": 3}))
+    even, each = shoes_and_worn_drum(case)
+    result = tw.run(case)
+    for shoe, (torque, largest) in each.items():
+        found = result.summary["contacts"][shoe]
+        assert found["friction_torque_Nm"] == pytest.approx(torque, rel=5e-5)
+        assert found["max_pressure_Pa"] == pytest.approx(largest, rel=1e-4)
+        rate = result.columns(f"interface_{shoe}")["wear_rate_2_m_per_s"]
+        np.testing.assert_allclose(rate, even, rtol=1e-5, atol=0.0)
+
+
+def test_the_worn_volume_of_the_drum_is_that_of_its_circumference():
+    """requirement: a running-in wears both shoes' parts of the drum by one depth."""
+    analysis = {"type": "transient", "end_time": "20 h", "tolerance": 1e-3}
+    result = tw.run(tw.load(tables(SHOES, TRACK | {"analysis": analysis})))
+    depths = [result.columns(f"interface_{shoe}")["wear_2_m"] for shoe in SENSES]
+    depth = depths[0][0]
+    assert depth > 1e-6
+    np.testing.assert_allclose(np.concatenate(depths), depth, rtol=1e-9)
+    volume = result.summary["bodies"]["drum"]["wear_volume_m3"]
+    assert volume == pytest.approx(depth * 2 * np.pi * 0.15 * 0.032, rel=1e-9)
 
 
 def test_a_force_that_lifts_a_shoe_has_no_steady_state():

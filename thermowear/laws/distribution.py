@@ -79,23 +79,40 @@ class InPlace(Distribution):
 IN_PLACE = InPlace()
 
 
-def joined_distributions(each: Sequence[Distribution], counts: Sequence[int]) -> Distribution:
-    """Distribution of the wear at the points of several interfaces, see `joined_laws`."""
+def joined_distributions(
+    each: Sequence[Distribution], counts: Sequence[int], tracks: Sequence[str] = ()
+) -> Distribution:
+    """Distribution of the wear at the points of several interfaces, see `joined_laws`.
+
+    Parameters
+    ----------
+    each : sequence of Distribution
+    counts : sequence of int
+        Number of points of each interface.
+    tracks : sequence of str
+        Name of the track that passes each interface, by default one of its own. A track that passes
+        several of them wears by the sum of what each causes, for the points of all of them.
+    """
     if len(each) == 1 or all(isinstance(one, InPlace) for one in each):
         return each[0]
-    share, coverage = (
-        np.concatenate([np.broadcast_to(v, n) for v, n in zip(values, counts, strict=True)])
-        for values in ([one.share for one in each], [one.coverage for one in each])
+    share = np.concatenate(
+        [np.broadcast_to(one.share, n) for one, n in zip(each, counts, strict=True)]
     )
-    ends, known = np.cumsum(counts), [one.means for one in each]
-    ranges = [slice(end - n, end) for end, n in zip(ends, counts, strict=True)]
+    coverage = np.zeros_like(share)
+    ends, shared = np.cumsum(counts), dict[str, list[tuple[Distribution, slice]]]()
+    for k, (one, end, n) in enumerate(zip(each, ends, counts, strict=True)):
+        shared.setdefault(tracks[k] if tracks else str(k), []).append((one, slice(end - n, end)))
     rows, reach, varies = [], [], False
-    for means, points in zip(known, ranges, strict=True):
-        if means is not None:
-            rows.append(np.zeros((len(means.rows), len(share))))
-            reach.append(np.zeros((len(share), len(means.rows))))
-            rows[-1][:, points], reach[-1][points] = means.rows, means.reach
-            varies |= means.varies
+    for group in shared.values():
+        for _, points in group:
+            coverage[points] = sum(one.coverage for one, _ in group)
+        means = [(one.means, points) for one, points in group if one.means is not None]
+        if means:
+            rows.append(np.zeros((len(means[0][0].rows), len(share))))
+            reach.append(np.zeros((len(share), len(means[0][0].rows))))
+        for known, points in means:
+            rows[-1][:, points], reach[-1][points] = known.rows, known.reach
+            varies |= known.varies
     if not rows:
         return Distribution(share)
     return Distribution(share, Means(np.vstack(rows), np.hstack(reach), varies, coverage))

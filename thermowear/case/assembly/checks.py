@@ -165,8 +165,9 @@ def _motions(case: AssemblyCase) -> Iterator[Fault]:
 def _wear(case: AssemblyCase) -> Iterator[Fault]:
     """Wear laws fit the friction of the contacts of their body."""
     for name, law in case.wear.items():
-        if law.spread == "track" and name not in case.geometry.rings:
-            yield f"wear.{name}.spread", "is for rings that pass under a sector (geometry.rings)"
+        if law.spread == "track" and not _passes(case, name):
+            text = "is for rings that pass a sector (geometry.whole) and for a turning drum"
+            yield f"wear.{name}.spread", text
         if law.layers is not None:
             yield f"wear.{name}.layers", "not supported in a model of several bodies"
         if law.materials:
@@ -179,6 +180,15 @@ def _wear(case: AssemblyCase) -> Iterator[Fault]:
                     f"contacts.{joint}.friction",
                     f'is 0; wear.{name} is per friction stress (write per = "pressure" instead)',
                 )
+
+
+def _passes(case: AssemblyCase, body: str) -> bool:
+    """Test for a body with a track that passes its contacts."""
+    geometry = case.geometry
+    faces = [face for contact in case.contacts.values() for face in contact.between or ()]
+    own = [face for face in faces if geometry.body_of(face) == body]
+    tracks = all(geometry.track(face) is not None for face in own)
+    return body in geometry.rings or (tracks and body in case.motions)
 
 
 def _materials(case: AssemblyCase) -> Iterator[Fault]:

@@ -98,6 +98,13 @@ class AssemblyGeometry(Section):
         """Centre of rotation of a holder of a surface by default; None: the origin."""
         return None
 
+    def track(self, face: str) -> tuple[str, float] | None:
+        """Name and length [m] of the track that passes a contact face; None if it has none.
+
+        A track of one name may pass several contacts.
+        """
+        return None
+
     @abstractmethod
     def build(self, mesh) -> Any:
         """Mesh all bodies.

@@ -20,6 +20,7 @@ from ...model.interface import Interface
 from ...model.model import Discretisation, Model, Zone
 from ...model.relative_motion import relative_motion
 from ...model.tie import Tie, glued_bodies, with_glued
+from ...model.tracks import EvenTrack
 from .model import attributes, conductance, face_wear, material
 
 
@@ -112,7 +113,9 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
         gap_conductance=table.gap_conductance or 0.0,
         partition=into_1,
         wear={
-            side: _wear(case, body, table) for side, body in enumerate(bodies) if body in case.wear
+            side: _wear(case, face, table)
+            for side, (body, face) in enumerate(zip(bodies, faces, strict=True))
+            if body in case.wear
         },
         compliance=table.compliance or 0.0,
         pressure_degree=table.pressure_degree,
@@ -141,11 +144,17 @@ def _motion(table: BodyMotionTable | None) -> Motion | None:
     )
 
 
-def _wear(case: AssemblyCase, body: str, table: AssemblyContactTable) -> Wear:
-    wear = case.wear[body]
-    in_place = wear.spread == "in-place"
-    track = IN_PLACE if in_place else Distribution(case.geometry.sector)
-    return face_wear(wear, table, track)
+def _wear(case: AssemblyCase, face: str, table: AssemblyContactTable) -> Wear:
+    """Wear of a face of a contact."""
+    geometry = case.geometry
+    wear = case.wear[geometry.body_of(face)]
+    if wear.spread == "in-place":
+        return face_wear(wear, table, IN_PLACE)
+    passing = geometry.track(face)
+    if passing is None:
+        return face_wear(wear, table, Distribution(geometry.sector))
+    name, length = passing
+    return face_wear(wear, table, EvenTrack(length, name))
 
 
 def _ties(case: AssemblyCase) -> tuple[Tie, ...]:

@@ -12,8 +12,9 @@ from ...contact.search.pairing import Pairing
 from ...laws.distribution import IN_PLACE, Distribution, joined_distributions
 from ...laws.interfaces import Law
 from ...laws.law_by_point import joined_laws
-from ...model.face_wear import Wear
+from ...model.face_wear import FaceWear, Wear
 from ...model.model import Model
+from ...model.tracks import EvenTrack
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,9 @@ class JointWear:
         """Distribution of the wear of these faces, likewise."""
         return {
             side: joined_distributions(
-                [self._distribution(wear, pairing) for wear, pairing in each], self._counts
+                [self._distribution(wear, pairing) for wear, pairing in each],
+                self._counts,
+                [_track(wear) or str(k) for k, (wear, _) in enumerate(each)],
             )
             for side, each in self._sides.items()
         }
@@ -75,3 +78,9 @@ class JointWear:
         worn = sorted({side for interface in interfaces for side in interface.wear})
         pairs = list(zip(interfaces, self.contacts.each, strict=True))
         return {side: [(one.wear.get(side), pairing) for one, pairing in pairs] for side in worn}
+
+
+def _track(wear: Wear | None) -> str:
+    """Name of the track that passes several interfaces; empty for one of its own."""
+    track = wear.track if isinstance(wear, FaceWear) else None
+    return track.name if isinstance(track, EvenTrack) else ""

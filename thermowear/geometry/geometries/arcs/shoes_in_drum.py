@@ -140,6 +140,10 @@ class ShoesInDrum(AssemblyGeometry):
         shoe = self.shoes.get(self.body_of(surface))
         return None if shoe is None else shoe.pivot
 
+    def track(self, face: str) -> tuple[str, float] | None:
+        """Inner circumference of the drum."""
+        return (_DRUM, 2 * math.pi * self.drum_radius) if self.body_of(face) == _DRUM else None
+
     def build(self, mesh):
         radius, rim = self.drum_radius, self.drum_radius + self.drum_thickness
         bodies = {}

@@ -46,8 +46,6 @@ MORE = {
         "interface_1.csv",
     },
 }
-PAIRS = [name for name in starters() if "[holders." not in starter_text(name)]
-"""Starters of two bodies; those of several are in `test_assembly_runs`."""
 COARSE = ("mesh.degree=3", "mesh.elements=6")
 QUICK = {
     RUNNING_IN: ("analysis.end_time=2 s", 'analysis.output_times=["1 s"]'),

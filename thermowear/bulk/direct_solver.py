@@ -121,6 +121,8 @@ class DirectSolver:
         """
         if not isinstance(loads, np.ndarray) and self._comm.size > 1:
             loads = loads.toarray()  # MUMPS needs sparse right-hand sides on one rank
+        elif not isinstance(loads, np.ndarray) and loads.nnz == 0:
+            return np.zeros(loads.shape, order="F")  # MUMPS needs entries (error -22, at random)
         flat = loads if loads.ndim == 2 else loads[:, None]  # a rank may own nothing
         dense = isinstance(flat, np.ndarray)
         right = self._dense(np.asfortranarray(flat)) if dense else self._sparse(flat)

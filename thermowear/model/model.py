@@ -140,8 +140,9 @@ class Model:
 
     @property
     def is_pair(self) -> bool:
-        """True for two bodies with one interface, of which the first one is held."""
-        return len(self.bodies) == 2 and len(self.interfaces) == len(self.holders) == 1
+        """True for two bodies with one interface, which has no name, and one holder."""
+        one = len(self.interfaces) == len(self.holders) == 1
+        return one and len(self.bodies) == 2 and not self.interfaces[0].name
 
     @cached_property
     def groups(self) -> list[tuple[int, ...]]:

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from ...errors import CaseError
 from ..values.section import Fault
 from .schema import AssemblyCase
+from .tables import SUPPORTS
 
 _ON_SURFACES = ("cooling", "temperature", "flux", "power")
 
@@ -57,7 +58,7 @@ def _surfaces(case: AssemblyCase) -> Iterator[tuple[str, tuple[str, ...]]]:
     for name, holder in case.holders.items():
         yield f"holders.{name}.surface", holder.surface
     for name, body in case.bodies.items():
-        for key in ("fixed", "rollers", "mid_plane"):
+        for key in SUPPORTS:
             yield f"bodies.{name}.{key}", getattr(body, key)
     yield "load.pressure", tuple(case.load.pressure)
     if case.heat is not None:

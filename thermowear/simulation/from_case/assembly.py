@@ -39,6 +39,7 @@ def assembly_of(case: AssemblyCase) -> Model:
         heat=None if case.heat is None else Heat(**attributes(Heat, case.heat)),
         thickness=geometry.thickness_factor if case.model.startswith("plane") else None,
         sector=geometry.sector,
+        symmetry=tuple(surface for body in case.bodies.values() for surface in body.symmetry),
         title=case.title,
         ties=ties,
     )
@@ -76,7 +77,7 @@ class AssemblyMeshes:
 
 def _body(case: AssemblyCase, name: str) -> Body:
     geometry, table = case.geometry, case.bodies[name]
-    guided = {*table.rollers, *table.mid_plane}
+    guided = {*table.symmetry, *table.rollers, *table.mid_plane}
     held = [s for h in case.holders.values() for s in h.surface if geometry.body_of(s) == name]
     return Body(
         name=name,

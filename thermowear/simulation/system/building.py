@@ -83,7 +83,10 @@ def build(
     with phases("mesh"):
         bodies = parts.get("bodies", made_from.mesh, lambda: _meshed(model, comm, zone, worn))
     discretisation = model.discretisation
-    choice = choose_solver(discretisation.solver, bodies, discretisation.degree, single)
+    glued_faces = [tie.faces for tie in model.ties]
+    choice = choose_solver(
+        discretisation.solver, bodies, discretisation.degree, single, glued_faces
+    )
     with phases("pair"):
         contacts, basis = parts.get(
             "points", made_from.points, lambda: _paired(model, comm, kinematics, bodies, worn)

@@ -1,4 +1,7 @@
-"""Meshes of disk brakes in space, of sectors of rings made by gmsh as its users do."""
+"""Meshes of disk brakes in space, of sectors of rings made by gmsh as its users do.
+
+As a module, ``python3 -m tests.ring_meshes``, it writes the mesh of the starter two-pads-3d.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +9,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 
+from thermowear.case import starters
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 
 WHOLE = (-math.pi, math.pi)
@@ -42,7 +47,7 @@ class Ring:
     cells: tuple[int, int, int]
 
 
-def write_rings(path, rings: Sequence[Ring], order: int = 2) -> None:
+def write_rings(path: Path, rings: Sequence[Ring], order: int = 2) -> Path:
     """Write rings, which share no nodes, in the unit of their lengths.
 
     Parameters
@@ -62,6 +67,7 @@ def write_rings(path, rings: Sequence[Ring], order: int = 2) -> None:
         for number, (ring, own) in enumerate(zip(rings, entities, strict=True)):
             _place(gmsh.model.mesh, ring, own, number * _APART)
         gmsh.write(str(path))
+    return path
 
 
 def _place(mesh, ring: Ring, entities: list[tuple[int, int]], lifted: float) -> None:
@@ -149,3 +155,21 @@ def _circle(geo, radius: float, z: float, ends: Sequence[float], cells: int):
 def _divided(geo, curve: int, cells: int) -> int:
     geo.mesh.setTransfiniteCurve(curve, cells + 1)
     return curve
+
+
+def starter_rings() -> list[Ring]:
+    """Pads of different thickness with back plates, and the disk of the starter two-pads-3d."""
+    rings, angles = [], (-math.pi / 6, math.pi / 6)
+    rings.append(Ring("DISK", (60, 75, 135, 140), (-6, 6), WHOLE, (4, 24, 2)))
+    for name, levels in (("UPPER", (6, 20, 25)), ("LOWER", (-6, -15, -20))):
+        face, glued, back = levels
+        pad, plate = ((min(ends), max(ends)) for ends in ((face, glued), (glued, back)))
+        rings.append(Ring(name, (80, 130), pad, angles, (3, 5, 1)))
+        rings.append(Ring(f"{name}_PLATE", (78, 132), plate, angles, (2, 4, 1)))
+    return rings
+
+
+STARTER_MESH = Path(starters.__file__).with_name("two-pads-3d.msh")
+
+if __name__ == "__main__":
+    write_rings(STARTER_MESH, starter_rings())

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from tests.conftest import two_blocks
-from tests.solid_meshes import DISK, PAD, write_blocks
 from thermowear.app.cli import main
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.geometry.reading.export import write_mesh
 
 from ..case.starter import changed
+from ..conftest import two_blocks
+from ..ring_meshes import STARTER_MESH, starter_rings, write_rings
+from ..solid_meshes import DISK, PAD, write_blocks
 
 STEEL = {"young_modulus": "200 GPa", "poisson_ratio": 0.3}
 NAMED = {
@@ -146,6 +147,32 @@ def test_materials_by_cell_set(tmp_path):
     assert materials["pad.PAD"].young_modulus == 200e9
     with pytest.raises(tw.CaseError, match=r"bodies\.pad\.young_modulus: missing; cells of 'CORE'"):
         tw.load(changed(case, {"bodies.pad.materials": {"PAD": STEEL}}))
+
+
+def test_a_face_of_two_materials(tmp_path):
+    """requirement: parts of a face wear by laws of their own, all as one body.
+
+    By hand: on a level face of one speed ``k p`` is uniform, so that the pressures of the halves
+    are in the ratio of the coefficients, and their mean is the force over the area.
+    """
+    file = layered_blocks(tmp_path / "layers.msh")
+    case = blocks(file, geometry__bodies={"pad": ["PAD", "CORE"], "disk": "DISK"})
+    case["geometry"]["surfaces"]["disk"]["track"] = "TRACK"
+    laws = {
+        name: {"coefficient": f"{k}e-8 1/MPa", "per": "pressure"}
+        for name, k in (("PAD", 1), ("CORE", 3))
+    }
+    case["wear"] = {"pad": {"materials": laws}}
+    found = tw.run(tw.load(case)).interface
+    left = found.x < -1e-9
+    right = found.x > 1e-9
+    mean = 100.0 / (20e-3 * 20e-3)
+    np.testing.assert_allclose(found.pressure[left], 1.5 * mean, rtol=1e-9)
+    np.testing.assert_allclose(found.pressure[right], 0.5 * mean, rtol=1e-9)
+    assert tw.load(changed(case, {"contact.friction": 0.0})).wear
+    del case["wear"]["pad"]["materials"]["CORE"]
+    with pytest.raises(tw.CaseError, match=r"^wear\.pad"):
+        tw.run(tw.load(case))
 
 
 def layered_blocks(path):
@@ -304,3 +331,14 @@ def test_validate_describes_all_bodies(joined, tmp_path, capsys):
     said = capsys.readouterr().out
     assert "pad 20 mm by 30 mm by 10 mm" in said
     assert "disk 40 mm by 50 mm by 15 mm" in said
+
+
+def test_the_mesh_of_the_starter(tmp_path):
+    """requirement: the mesh beside the starter is the one that its script makes."""
+    import meshio
+
+    made = meshio.read(write_rings(tmp_path / "made.msh", starter_rings()))
+    kept = meshio.read(STARTER_MESH)
+    ordered = [of.points[np.lexsort(np.round(of.points.T, 6))] for of in (made, kept)]
+    np.testing.assert_allclose(*ordered, atol=1e-6)
+    assert set(kept.field_data) == set(made.field_data)

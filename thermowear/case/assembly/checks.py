@@ -132,18 +132,18 @@ def _motions(case: AssemblyCase) -> Iterator[Fault]:
 
 def _wear(case: AssemblyCase) -> Iterator[Fault]:
     """Wear laws fit the friction of the contacts of their body."""
-    for name, law in case.wear.items():
-        if law.spread == "track" and name not in case.geometry.rings:
+    for name, table in case.wear.items():
+        if table.spread == "track" and name not in case.geometry.rings:
             yield f"wear.{name}.spread", "is for rings that pass under a sector (geometry.rings)"
-        if law.materials:
-            yield f"wear.{name}.materials", "not supported in a model of several bodies"
+    for path, law in case.wear.laws.items():
+        name = path.partition(".materials.")[0]
         for joint, contact in case.contacts.items():
             own = name in map(case.geometry.body_of, contact.between or ())
             per_friction = law.rate is None and law.per == "friction-stress"
             if own and per_friction and not contact.tie and contact.nominal_friction == 0.0:
                 yield (
                     f"contacts.{joint}.friction",
-                    f'is 0; wear.{name} is per friction stress (write per = "pressure" instead)',
+                    f'is 0; wear.{path} is per friction stress (write per = "pressure" instead)',
                 )
 
 

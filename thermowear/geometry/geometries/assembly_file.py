@@ -74,11 +74,13 @@ class AssemblyFile(AssemblyGeometry):
     body_names: dict[str, CellSets] = Field(alias="bodies")
     surface_names: dict[str, SurfaceNames] = Field(alias="surfaces")
     _with_material: dict[str, dict[str, str]] = PrivateAttr(default={})
-    _model: str = PrivateAttr(default="")
+    _in_space: bool = PrivateAttr(default=False)
+    _plane: bool = PrivateAttr(default=False)
 
     @model_validator(mode="after")
     def _complete(self, info: ValidationInfo):
-        self._model = (info.context or {}).get(MODEL) or ""
+        model = (info.context or {}).get(MODEL) or ""
+        self._in_space, self._plane = model == "3d", model.startswith("plane")
         if len(self.body_names) < 2:
             raise KeyFault("bodies", f"needs two or more bodies; found {len(self.body_names)}")
         if self.paths and self.path is not None:
@@ -87,7 +89,7 @@ class AssemblyFile(AssemblyGeometry):
             raise KeyFault("paths", f"needs a file for each of: {', '.join(self.bodies)}")
         if not self.paths and self.path is None:
             raise KeyFault("path", "missing")
-        if "thickness" in self.model_fields_set and not self.plane:
+        if "thickness" in self.model_fields_set and not self._plane:
             raise KeyFault("thickness", "requires a plane model")
         self._check_surfaces()
         return self
@@ -107,14 +109,9 @@ class AssemblyFile(AssemblyGeometry):
                     )
                 owners[name] = body
 
-    @property
-    def plane(self) -> bool:
-        """True for a plane model."""
-        return self._model.startswith("plane")
-
     @model_serializer(mode="wrap")
     def _by_keys(self, handler) -> dict[str, Any]:
-        left_out = set() if self.plane else {"thickness"}
+        left_out = set() if self._plane else {"thickness"}
         left_out |= set() if self.paths else {"paths"}
         found = {_KEYS.get(name, name): value for name, value in handler(self).items()}
         return {name: value for name, value in found.items() if name not in left_out}
@@ -144,14 +141,14 @@ class AssemblyFile(AssemblyGeometry):
 
     @property
     def thickness_factor(self) -> float | None:  # type: ignore[override]
-        return self.thickness if self.plane else None
+        return self.thickness if self._plane else None
 
     @property
     def mesh_files(self) -> str | None:  # type: ignore[override]
         return self.path or " and ".join(self.paths.values())
 
     def press_direction(self, surface: str) -> tuple[float, ...]:
-        return (0.0, 0.0, -1.0) if self._model == "3d" else (0.0, -1.0)
+        return (0.0, 0.0, -1.0) if self._in_space else (0.0, -1.0)
 
     def sets_of(self, body: str) -> tuple[str, ...]:
         names = self.body_names[body]
@@ -171,7 +168,7 @@ class AssemblyFile(AssemblyGeometry):
         return read_bodies(
             self.path,
             self.paths,
-            3 if self._model == "3d" else 2,
+            3 if self._in_space else 2,
             self.length_unit,
             {body: self.sets_of(body) for body in self.bodies},
             surfaces,

@@ -20,7 +20,7 @@ from ...model.interface import Interface
 from ...model.model import Discretisation, Model, Zone
 from ...model.relative_motion import relative_motion
 from ...model.tie import Tie, glued_bodies, with_glued
-from .model import attributes, conductance, face_wear, material
+from .model import attributes, body_wear, conductance, material
 
 
 def assembly_of(case: AssemblyCase) -> Model:
@@ -146,7 +146,7 @@ def _wear(case: AssemblyCase, body: str, table: AssemblyContactTable) -> Wear:
     wear = case.wear[body]
     in_place = wear.spread == "in-place"
     track = IN_PLACE if in_place else Distribution(case.geometry.sector)
-    return face_wear(wear, table, track)
+    return body_wear(case.geometry, body, wear, table, track)
 
 
 def _ties(case: AssemblyCase) -> tuple[Tie, ...]:

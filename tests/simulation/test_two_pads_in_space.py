@@ -53,9 +53,13 @@ def test_cold_steady_state_is_that_of_the_half(meshes):
     """requirement: two pads on a whole disk give the numbers of one on its half.
 
     By hand: with ``rate = k p v`` in place, the pressure is ``p0 r0 / r`` on a face that its
-    holder keeps level, so that the torque is ``mu F`` times the mean radius ``A / ∫ dA / r``.
+    holder keeps level, so that the torque is ``mu F`` times the mean radius ``A / ∫ dA / r``. The
+    disk turns anticlockwise and drags the pads along +y, by ``mu F`` times the mean cosine.
     """
     whole, _ = compared(meshes, two_pads.tables, ("pressure", "shape", "wear_rate_1"))
+    dragged = two_pads.FRICTION * two_pads.FORCE * np.sin(two_pads.ANGLE) / two_pads.ANGLE
+    for holder in whole.summary["holders"].values():
+        assert holder["guide_force_y_N"] == pytest.approx(-dragged, rel=1e-5)
     for contact in whole.summary["contacts"].values():
         assert contact["normal_force_N"] == pytest.approx(two_pads.FORCE, rel=1e-9)
         mean = (80e-3 + 130e-3) / 2  # (R² - r²)/2 over R - r
@@ -94,6 +98,18 @@ def test_hot_running_in_is_that_of_the_half(meshes):
         assert worn[pad]["wear_volume_m3"] == pytest.approx(
             two_pads.K * two_pads.FORCE * way, rel=0.05
         )
+
+
+def test_the_order_of_faces_does_not_matter(meshes):
+    """requirement: with the disk first and its part of the heat, the same numbers."""
+    case = two_pads.tables(meshes[True], True, {})
+    expected = tw.run(tw.load(case))
+    case["contacts"]["left"] = {"between": ["DISK_TOP", "left_face"], "partition": 0.9}
+    found = tw.run(tw.load(case))
+    for name in ("pressure", "shape", *HOT):
+        wanted = two_pads.columns(expected)[name]
+        size = np.abs(wanted).max()
+        np.testing.assert_allclose(two_pads.columns(found)[name], wanted, 0.0, 1e-9 * size)
 
 
 @pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")

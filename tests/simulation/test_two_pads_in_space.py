@@ -148,3 +148,13 @@ def test_multigrid(meshes):
         np.testing.assert_allclose(multigrid[name], direct[name], 0.0, 1e-6 * size, err_msg=name)
     with pytest.raises(tw.CaseError, match=r"^mesh\.solver: glued bodies are solved by a factor"):
         tw.run(tw.load(two_pads.tables(meshes[False]), ("mesh.solver=multigrid",)))
+
+
+def test_what_is_glued_to_the_disk_would_carry_heat(meshes):
+    """requirement: advection in one of several glued bodies is refused in one line."""
+    case = two_pads.tables(meshes[False], heat={"advection": "spread"})
+    case["contacts"]["right"]["tie"] = True
+    del case["wear"]["right"]
+    case["bodies"]["disk"] = {k: v for k, v in case["bodies"]["disk"].items() if k != "fixed"}
+    with pytest.raises(tw.CaseError, match=r"^heat\.advection: right is glued to disk"):
+        tw.run(tw.load(case))

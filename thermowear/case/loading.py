@@ -18,11 +18,11 @@ from pydantic import ValidationError
 
 from ..errors import MOST_FAULTS, CaseError, quoted, shortened
 from ..user_files import read_text
-from .assembly.checks import check as check_assembly
 from .assembly.geometry import known_assemblies
 from .assembly.schema import AssemblyCase
 from .tables.geometry_choice import known_geometries
 from .tables.schema import Case
+from .validation.assembly import check as check_assembly
 from .validation.checks import check
 from .values.section import FOLDER, KeyFault, Section
 
@@ -114,11 +114,11 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
 
 
 def _is_assembly(tables: dict[str, Any]) -> bool:
-    """Test for a case of several bodies, which has tables of holders."""
+    """Test for a case of several bodies, which has tables of contacts and holders."""
     geometry = tables.get("geometry")
     kind = geometry.get("type") if isinstance(geometry, dict) else None
     only = known_assemblies().keys() - known_geometries().keys()
-    return "holders" in tables or (isinstance(kind, str) and kind in only)
+    return bool(tables.keys() & {"holders", "contacts"}) or (isinstance(kind, str) and kind in only)
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -186,8 +186,8 @@ def _message(fault: Any, kind: type[Section]) -> str:
         return f"{path}.type: found {quoted(fault['input']['type'])}; must be one of {_ANALYSES}"
     if fault["type"] == "value_error":
         error = fault["ctx"]["error"]
-        key = [error.key] if isinstance(error, KeyFault) else []
-        return f"{'.'.join([*filter(None, [path]), *key])}: {error}"
+        key = (error.key,) if isinstance(error, KeyFault) else ()
+        return f"{'.'.join(map(str, (*location, *key)))}: {error}"
     if fault["type"] == "extra_forbidden":
         return f"{path}: unknown key{_suggestion(location, kind)}"
     message = _MESSAGES.get(fault["type"], fault["msg"]).format(**fault.get("ctx", {}))

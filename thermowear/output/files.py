@@ -17,7 +17,7 @@ from ..results import TABLES
 PICTURES = {
     "bodies": "Von Mises stress of the bodies, and their temperature if the case has heat.",
     "deformed": "Deformed bodies, displacements magnified.",
-    "faces": "Contact face of body 2 in space, without body 1, and the worn shape magnified.",
+    "faces": "Contact face of the second body in space, and the worn shape magnified.",
     "interface": "Pressure, temperatures and shape of the worn face along the contact.",
     "profile": "Worn shape.",
     "wear": "Pressure and wear depth along the contact at the output times and at the end.",
@@ -32,7 +32,7 @@ PICTURES = {
 }
 """Pictures of a run with their captions, in the order of the report."""
 
-_BY_CONTACT = "interface", "profile", "wear", "coating"
+_BY_CONTACT = "interface", "profile", "wear", "coating", "faces"
 """Pictures by contact in a model of several bodies."""
 _AT = "_at_"
 """Between the name of a contact and the output time in the names of files."""

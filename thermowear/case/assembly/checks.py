@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from ...errors import CaseError
 from ..values.section import Fault
 from .schema import AssemblyCase
+from .tables import SUPPORTS
 
 _NAME, _AT = re.compile(r"[\w-]+"), "_at_"
 """Names of contacts are parts of file names; a time follows the latter."""
@@ -62,7 +63,7 @@ def _surfaces(case: AssemblyCase) -> Iterator[tuple[str, tuple[str, ...]]]:
     for name, holder in case.holders.items():
         yield f"holders.{name}.surface", holder.surface
     for name, body in case.bodies.items():
-        for key in ("fixed", "rollers", "mid_plane"):
+        for key in SUPPORTS:
             yield f"bodies.{name}.{key}", getattr(body, key)
     yield "load.pressure", tuple(case.load.pressure)
     if case.heat is not None:
@@ -164,21 +165,21 @@ def _motions(case: AssemblyCase) -> Iterator[Fault]:
 
 def _wear(case: AssemblyCase) -> Iterator[Fault]:
     """Wear laws fit the friction of the contacts of their body."""
-    for name, law in case.wear.items():
-        if law.spread == "track" and not _passes(case, name):
-            text = "is for rings that pass a sector (geometry.whole) and for a turning drum"
+    for name, table in case.wear.items():
+        if table.spread == "track" and not _passes(case, name):
+            text = "is for rings that pass a sector (geometry.rings) and for a turning drum"
             yield f"wear.{name}.spread", text
-        if law.layers is not None:
+        if table.layers is not None:
             yield f"wear.{name}.layers", "not supported in a model of several bodies"
-        if law.materials:
-            yield f"wear.{name}.materials", "not supported in a model of several bodies"
+    for path, law in case.wear.laws.items():
+        name = path.partition(".materials.")[0]
         for joint, contact in case.contacts.items():
             own = name in map(case.geometry.body_of, contact.between or ())
             per_friction = law.rate is None and law.per == "friction-stress"
             if own and per_friction and not contact.tie and contact.nominal_friction == 0.0:
                 yield (
                     f"contacts.{joint}.friction",
-                    f'is 0; wear.{name} is per friction stress (write per = "pressure" instead)',
+                    f'is 0; wear.{path} is per friction stress (write per = "pressure" instead)',
                 )
 
 

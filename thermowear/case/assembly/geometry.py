@@ -26,7 +26,7 @@ class AssemblyGeometry(Section):
         Values of ``model`` that it supports.
     bodies : tuple of str
     surfaces : tuple of str
-        All named surfaces, each ``body_…``.
+        All named surfaces, of a mesh made by the program each ``body_…``.
     contacts : dict of str to tuple of str
         Pairs of faces that touch, by the name of the contact, unless the case has a table of
         contacts.
@@ -105,6 +105,14 @@ class AssemblyGeometry(Section):
         """
         return None
 
+    def sets_of(self, body: str) -> tuple[str, ...]:
+        """Cell sets of a mesh file that a body consists of."""
+        return ()
+
+    def with_cell_sets(self, sets: dict[str, dict[str, str]]) -> AssemblyGeometry:
+        """Geometry with zones for the cell sets of bodies, given with the paths of their tables."""
+        return self
+
     @abstractmethod
     def build(self, mesh) -> Any:
         """Mesh all bodies.
@@ -116,6 +124,20 @@ class AssemblyGeometry(Section):
         Returns
         -------
         thermowear.geometry.mesh.tagged.TaggedMesh
+        """
+
+    def check(self, mesh: Any, case: Any) -> None:
+        """Check a mesh that was read from a file; no-op for generated meshes.
+
+        Parameters
+        ----------
+        mesh : thermowear.geometry.mesh.tagged.TaggedMesh
+        case : thermowear.case.assembly.schema.AssemblyCase
+
+        Raises
+        ------
+        CaseError
+            If it contradicts the case.
         """
 
 

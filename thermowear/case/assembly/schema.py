@@ -10,7 +10,7 @@ from ...errors import CaseError
 from ..tables.analyses import Initial, Steady, Transient
 from ..tables.conditions import HeatTable
 from ..tables.contact import InterfaceTable
-from ..tables.materials import Properties, located_material
+from ..tables.materials import Properties, cell_sets, located_material
 from ..tables.schema import MeshTable, check_size
 from ..tables.wear import WearTable
 from ..values.section import Section
@@ -49,6 +49,13 @@ class AssemblyCase(Section):
     wear: WearTable = WearTable()
     heat: HeatTable | None = None
     analysis: Annotated[Initial | Steady | Transient, Field(discriminator="type")]
+
+    @model_validator(mode="after")
+    def _cell_sets_as_parts(self):
+        sets = cell_sets(self.bodies, self.wear)
+        if sets:
+            object.__setattr__(self, "geometry", self.geometry.with_cell_sets(sets))
+        return self
 
     @model_validator(mode="after")
     def _all_contacts(self):
@@ -90,6 +97,7 @@ class AssemblyCase(Section):
         x = mesh.points[:, 0]
         if self.model == "axisymmetric" and x.min() < -1e-9 * x.max():
             raise CaseError("geometry: x is the radius of an axisymmetric mesh, found x < 0")
+        self.geometry.check(mesh, self)
         return mesh
 
 

@@ -34,6 +34,10 @@ def _names(value):
 Names = Annotated[tuple[str, ...], BeforeValidator(_names)]
 
 
+SUPPORTS = ("fixed", "symmetry", "rollers", "mid_plane")
+"""Keys of surfaces of a body that are held."""
+
+
 class AssemblyContactTable(InterfaceTable):
     """Table ``contacts.NAME``; keys that are left out have the values of ``contact`` and ``heat``.
 
@@ -146,17 +150,18 @@ class AssemblyBodyTable(BodyTable):
 
     Attributes
     ----------
-    fixed, rollers, mid_plane : tuple of str
-        Surfaces that are clamped; that cannot move along y; in space, that cannot move along z.
+    fixed, symmetry, rollers, mid_plane : tuple of str
+        Surfaces that are clamped; that cannot move along x; along y; in space, along z.
     """
 
     fixed: Names = ()
+    symmetry: Names = ()
     rollers: Names = ()
     mid_plane: Names = ()
 
     @property
     def has_own(self) -> bool:
-        return bool(self.model_fields_set - {"materials", "fixed", "rollers", "mid_plane"})
+        return bool(self.model_fields_set - {"materials", *SUPPORTS})
 
 
 class SurfaceLoadTable(Section):

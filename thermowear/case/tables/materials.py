@@ -53,6 +53,34 @@ class BodyTable(Properties):
         return bool(self.model_fields_set - {"materials"})
 
 
+def cell_sets(bodies: Mapping[str, BodyTable], wear: Any) -> dict[str, dict[str, str]]:
+    """Cell sets with a material or wear law of their own, and the paths of their tables, by body.
+
+    Parameters
+    ----------
+    bodies : mapping of str to BodyTable
+    wear : WearTable
+    """
+    sets: dict[str, dict[str, str]] = {}
+    for kind, tables in (("bodies", bodies), ("wear", wear)):
+        for name, table in tables.items():
+            for part in table.materials:
+                sets.setdefault(name, {}).setdefault(part, f"{kind}.{name}.materials.{part}")
+    return sets
+
+
+def part_named(geometry: Any, body: str, name: str) -> str | None:
+    """Part of a body by the name of its zone, or cell set of a mesh file; None if unknown.
+
+    Parameters
+    ----------
+    geometry : Geometry or AssemblyGeometry
+    body, name : str
+    """
+    zones, set_of = geometry.parts_of(body)[1:], geometry.set_of
+    return next((part for part in zones if set_of.get(part, part) == name), None)
+
+
 def located_material(
     geometry: Any, bodies: Mapping[str, BodyTable], part: str
 ) -> tuple[str, Properties]:

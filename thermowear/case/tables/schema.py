@@ -16,7 +16,7 @@ from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
 from .contact import ContactTable
 from .geometry import Pressing
 from .geometry_choice import AnyGeometry
-from .materials import BodyTable, Properties, located_material
+from .materials import BodyTable, Properties, cell_sets, located_material, part_named
 from .tabulated import TimeHistory
 from .wear import WearTable
 
@@ -106,11 +106,7 @@ class Case(Section):
 
     @model_validator(mode="after")
     def _cell_sets_as_parts(self):
-        sets: dict[str, dict[str, str]] = {}
-        for kind, tables in (("bodies", self.bodies), ("wear", self.wear)):
-            for name, table in tables.items():
-                for part in table.materials:
-                    sets.setdefault(name, {}).setdefault(part, f"{kind}.{name}.materials.{part}")
+        sets = cell_sets(self.bodies, self.wear)
         if sets:
             object.__setattr__(self, "geometry", self.geometry.with_cell_sets(sets))
         return self
@@ -202,8 +198,7 @@ class Case(Section):
 
     def part_named(self, body: str, name: str) -> str | None:
         """Part of a body by the name of its zone, or cell set of a mesh file; None if unknown."""
-        zones, set_of = self.geometry.parts_of(body)[1:], self.geometry.set_of
-        return next((part for part in zones if set_of.get(part, part) == name), None)
+        return part_named(self.geometry, body, name)
 
     def material(self, part: str) -> Properties:
         """Material of a part, with ``like`` resolved; a zone may share the material of its body."""

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ..assembly.schema import AssemblyCase
+from ..tables.materials import part_named
 from ..tables.schema import Case
 from ..values.section import Fault
 
 _CYCLIC = ("fretting", "reciprocating")
 
 
-def part_wear(case: Case) -> Iterator[Fault]:
+def part_wear(case: Case | AssemblyCase) -> Iterator[Fault]:
     """Wear laws of parts name parts of the body, which wears in place, in one direction."""
     geometry, type_ = case.geometry, case.analysis.type
     for body, wear in case.wear.items():
@@ -22,7 +24,7 @@ def part_wear(case: Case) -> Iterator[Fault]:
             yield path, f"{geometry.type!r} has no parts of {body}; leave it out"
             continue
         for name in wear.materials:
-            if case.part_named(body, name) is None:
+            if part_named(geometry, body, name) is None:
                 yield f"{path}.{name}", f"unknown part; must be one of: {', '.join(known)}"
         if type_ in _CYCLIC:
             yield path, f"is not supported in a {type_} analysis"

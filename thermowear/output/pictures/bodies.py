@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 
 from ...results import FIELDS
 from .. import tables
-from ..files import contacts_of, name_at
+from ..files import contacts_of, name_at, picture, read_summary
 from .maps import is_surface
 from .panels import (
     MAP_STYLE,
@@ -128,7 +128,7 @@ def outline(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def draw_bodies(folder: Path) -> None:
     """Draw ``bodies.png`` (fields on the undeformed bodies) and ``deformed.png``.
 
-    In space also ``faces.png``.
+    In space also ``faces.png``, one for each contact of several bodies.
     """
     (_draw_solids if is_surface(folder) else _draw_sections)(folder)
 
@@ -188,12 +188,25 @@ def _draw_solids(folder: Path) -> None:
     from .faces import draw_faces
     from .solids import draw_solids, read_grid
 
-    interface, grid = _interfaces(folder)[0], read_grid(folder / "fields.vtu")
+    interfaces, grid = _interfaces(folder), read_grid(folder / "fields.vtu")
+    interface = interfaces[0]
     draw_solids(folder / "bodies.png", grid, interface)
-    draw_faces(folder / "faces.png", grid, interface)
+    for contact, face in zip(contacts_of(folder), interfaces, strict=True):
+        draw_faces(folder / picture("faces", contact), grid, face, _seen(folder, contact))
     factor = _magnification(grid.points, 1e3 * grid["displacement_m"])
     grid.points = grid.points + factor * 1e3 * grid["displacement_m"]
     draw_solids(folder / "deformed.png", grid, interface, _title(factor))
+
+
+def _seen(folder: Path, contact: str):
+    """Body that bears the face of a contact in its picture: the second one."""
+    from .faces import Seen
+
+    if not contact:
+        return Seen()
+    summary = read_summary(folder)
+    first, second = summary["contacts"][contact]["between"]
+    return Seen(1 + list(summary["bodies"]).index(second), f"{second}, seen from {first}")
 
 
 def _title(factor: float) -> str:

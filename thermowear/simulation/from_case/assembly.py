@@ -20,8 +20,8 @@ from ...model.interface import Interface
 from ...model.model import Discretisation, Model, Zone
 from ...model.relative_motion import relative_motion
 from ...model.tie import Tie, glued_bodies, with_glued
-from ...model.tracks import EvenTrack
-from .model import attributes, conductance, face_wear, material
+from ...model.tracks import EvenTrack, Track
+from .model import attributes, body_wear, conductance, material
 
 
 def assembly_of(case: AssemblyCase) -> Model:
@@ -40,6 +40,7 @@ def assembly_of(case: AssemblyCase) -> Model:
         heat=None if case.heat is None else Heat(**attributes(Heat, case.heat)),
         thickness=geometry.thickness_factor if case.model.startswith("plane") else None,
         sector=geometry.sector,
+        symmetry=tuple(surface for body in case.bodies.values() for surface in body.symmetry),
         title=case.title,
         ties=ties,
     )
@@ -77,7 +78,7 @@ class AssemblyMeshes:
 
 def _body(case: AssemblyCase, name: str) -> Body:
     geometry, table = case.geometry, case.bodies[name]
-    guided = {*table.rollers, *table.mid_plane}
+    guided = {*table.symmetry, *table.rollers, *table.mid_plane}
     held = [s for h in case.holders.values() for s in h.surface if geometry.body_of(s) == name]
     return Body(
         name=name,
@@ -146,15 +147,20 @@ def _motion(table: BodyMotionTable | None) -> Motion | None:
 
 def _wear(case: AssemblyCase, face: str, table: AssemblyContactTable) -> Wear:
     """Wear of a face of a contact."""
+    body = case.geometry.body_of(face)
+    return body_wear(case.geometry, body, case.wear[body], table, _track(case, body, face))
+
+
+def _track(case: AssemblyCase, body: str, face: str) -> Distribution | Track:
+    """Where a face of a body wears."""
     geometry = case.geometry
-    wear = case.wear[geometry.body_of(face)]
-    if wear.spread == "in-place":
-        return face_wear(wear, table, IN_PLACE)
+    if case.wear[body].spread == "in-place":
+        return IN_PLACE
     passing = geometry.track(face)
     if passing is None:
-        return face_wear(wear, table, Distribution(geometry.sector))
+        return Distribution(geometry.sector)
     name, length = passing
-    return face_wear(wear, table, EvenTrack(length, name))
+    return EvenTrack(length, name)
 
 
 def _ties(case: AssemblyCase) -> tuple[Tie, ...]:

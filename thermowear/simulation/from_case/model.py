@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from ...case.assembly.geometry import AssemblyGeometry
 from ...case.tables.analyses import Fretting
 from ...case.tables.contact import InterfaceTable
 from ...case.tables.geometry import Geometry, Pressing
 from ...case.tables.laws import PressureConductanceTable, TabulatedConductanceTable, law_of
-from ...case.tables.materials import Properties
+from ...case.tables.materials import Properties, part_named
 from ...case.tables.schema import Case, MeshTable
 from ...case.tables.tabulated import (
     ExpansionTable,
@@ -222,29 +223,49 @@ def conductance(given: Any, path: str) -> Law | HardnessConductance | None:
 def _wear(case: Case) -> dict[int, Wear]:
     """Wear of the faces by index; bodies without a wear table do not wear."""
     return {
-        index: _body_wear(case, name, case.wear[name])
+        index: body_wear(
+            case.geometry, name, case.wear[name], case.contact, _track(case, case.wear[name])
+        )
         for index, name in enumerate(case.geometry.bodies)
         if name in case.wear
     }
 
 
-def _body_wear(case: Case, name: str, wear: BodyWearTable) -> Wear:
-    """Wear of a body by one law, or by those of its parts; the others have the body's own."""
+def body_wear(
+    geometry: Geometry | AssemblyGeometry,
+    name: str,
+    wear: BodyWearTable,
+    contact: InterfaceTable,
+    track: Distribution | Track,
+) -> Wear:
+    """Wear of a body by one law, or by those of its parts; the others have the body's own.
+
+    Parameters
+    ----------
+    geometry : Geometry or AssemblyGeometry
+    name : str
+        Name of the body.
+    wear : BodyWearTable
+    contact : InterfaceTable
+        Contact of the face, which defines the friction stress.
+    track : Distribution or Track
+        Where a body with one law wears; those of parts wear in place.
+    """
     if not wear.materials:
-        return _layered(case, wear)
-    parts = case.geometry.parts_of(name)
-    found = dict.fromkeys(parts, face_wear(wear, case.contact)) if wear.has_law else {}
-    own = {case.part_named(name, key): law for key, law in wear.materials.items()}
-    found |= {part: face_wear(law, case.contact) for part, law in own.items() if part is not None}
+        return _layered(wear, contact, track)
+    parts = geometry.parts_of(name)
+    found = dict.fromkeys(parts, face_wear(wear, contact)) if wear.has_law else {}
+    own = {part_named(geometry, name, key): law for key, law in wear.materials.items()}
+    found |= {part: face_wear(law, contact) for part, law in own.items() if part is not None}
     return CompositeWear(found)
 
 
-def _layered(case: Case, wear: BodyWearTable) -> FaceWear:
+def _layered(wear: BodyWearTable, contact: InterfaceTable, track: Distribution | Track) -> FaceWear:
     """Wear of a face by one law, or by those of its layers and of the substrate below them."""
-    substrate = face_wear(wear, case.contact, _track(case, wear))
+    substrate = face_wear(wear, contact, track)
     if wear.layers is None:
         return substrate
-    laws = (*(face_wear(layer, case.contact).law for layer in wear.of_layers), substrate.law)
+    laws = (*(face_wear(layer, contact).law for layer in wear.of_layers), substrate.law)
     return replace(substrate, law=LayeredWear(wear.layers.thickness, laws))
 
 

@@ -226,7 +226,7 @@ def _passage(model: Model, heat: Heat) -> Passage | None:
     Raises
     ------
     CaseError
-        If there are several such bodies.
+        If there are several such bodies, or others are glued to it.
     """
     found = {
         (interface.bodies[1], interface.motion.center, _passing_speed(interface.motion))
@@ -240,6 +240,12 @@ def _passage(model: Model, heat: Heat) -> Passage | None:
             "heat.advection: several bodies pass others; heat can be carried along by one only"
         )
     ((body, center, speed),) = found
+    glued = [k for group in model.groups if body in group for k in group if k != body]
+    if glued:
+        raise CaseError(
+            f"heat.advection: {model.bodies[glued[0]].name} is glued to {model.bodies[body].name}, "
+            'which passes others; heat can be carried along by one body only; use "none"'
+        )
     return Passage(model.bodies[body].parts, center, speed, spread=heat.advection == "spread")
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -145,10 +146,11 @@ def node_ranges(counts: Sequence[int]) -> list[slice]:
     return [slice(int(a), int(b)) for a, b in pairwise([0, *np.cumsum(counts)])]
 
 
-class ExchangeFactor:
-    """Triangular factors of the unknowns: ``I - Φ N``, and ``-N`` of the jumps.
+def factorised(coupling: sp.csr_array, response: Sequence[np.ndarray]) -> Callable:
+    """Solution with the factors of the unknowns: ``I - Φ N``, and ``-N`` of the jumps.
 
-    Bodies are coupled to their neighbours only: the factors of several pairs are sparse.
+    As `dgetrs` with its first arguments given. Bodies are coupled to their neighbours only: the
+    factors of several pairs are sparse.
 
     Parameters
     ----------
@@ -162,32 +164,22 @@ class ExchangeFactor:
     ComputationError
         If a heated body has no heat sink.
     """
-
-    def __init__(self, coupling: sp.csr_array, response: Sequence[np.ndarray]):
-        self._sparse, self._dense = None, None
-        if len(response) > _PAIR:
-            self._sparse = _sparse_factor(coupling, response)
-        else:
-            self._dense = _dense_factor(coupling, response)
-
-    def solve(self, right: np.ndarray, transposed: bool = False) -> np.ndarray:
-        """Solutions for right-hand sides, by columns."""
-        if self._sparse is not None:
-            return self._sparse.solve(right, "T" if transposed else "N")
-        return dgetrs(*self._dense, right, trans=int(transposed))[0].reshape(right.shape)
+    several = len(response) > _PAIR
+    return _sparse_factor(coupling, response) if several else _dense_factor(coupling, response)
 
 
-def _sparse_factor(coupling: sp.csr_array, response: Sequence[np.ndarray]):
+def _sparse_factor(coupling: sp.csr_array, response: Sequence[np.ndarray]) -> Callable:
     end = sum(len(Φ) for Φ in response)
     coupled = sp.block_diag(response, format="csr") @ coupling[:end]
     lines = sp.eye_array(end, coupling.shape[1], format="csr") - coupled
     try:
-        return splu(sp.csc_matrix(sp.vstack([lines, -coupling[end:]])))
+        factor = splu(sp.csc_matrix(sp.vstack([lines, -coupling[end:]])))
     except RuntimeError:  # exactly singular
         raise ComputationError(NO_HEAT_SINK) from None
+    return lambda right, trans=0: (factor.solve(right, "NT"[trans]), 0)
 
 
-def _dense_factor(coupling: sp.csr_array, response: Sequence[np.ndarray]):
+def _dense_factor(coupling: sp.csr_array, response: Sequence[np.ndarray]) -> Callable:
     end = sum(len(Φ) for Φ in response)
     matrix = np.empty(coupling.shape, order="F")
     for rows, Φ in zip(node_ranges([len(Φ) for Φ in response]), response, strict=True):
@@ -198,4 +190,4 @@ def _dense_factor(coupling: sp.csr_array, response: Sequence[np.ndarray]):
     factor, pivots, singular = dgetrf(matrix, overwrite_a=1)
     if singular:
         raise ComputationError(NO_HEAT_SINK)
-    return factor, pivots
+    return partial(dgetrs, factor, pivots)

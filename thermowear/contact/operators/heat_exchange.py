@@ -18,9 +18,9 @@ import scipy.sparse as sp
 from ...parallel import sum_over_ranks
 from .exchange_matrix import (
     Division,
-    ExchangeFactor,
     coupling_matrix,
     divided,
+    factorised,
     jump_scale,
     node_ranges,
     scaled_functions,
@@ -169,7 +169,7 @@ class HeatExchange:
         self.coupling = coupling_matrix(
             face.weights, functions, face.values, self.division, face.shifts
         )
-        self._factor = ExchangeFactor(self.coupling, face.response)
+        self._solve = factorised(self.coupling, face.response)
 
     @cached_property
     def _crossing(self) -> sp.csr_array:
@@ -227,13 +227,14 @@ class HeatExchange:
 
     def response(self, loads: np.ndarray) -> np.ndarray:
         """Unknowns ``x = G b`` by loads b, by columns."""
-        return self._factor.solve(self._risen(self.face.response, loads))
+        found, _ = self._solve(self._risen(self.face.response, loads))
+        return found.reshape(loads.shape)
 
     def transposed_response(self, values: np.ndarray) -> np.ndarray:
         """Products ``Gᵀ values``, by columns."""
         if self.face.responses.symmetric:
             return self.response(values)
-        adjoint = self._factor.solve(values, transposed=True)
+        adjoint, _ = self._solve(values, trans=1)
         return self._risen([Φ.T for Φ in self.face.response], adjoint)
 
     def _risen(self, response: Sequence[np.ndarray], loads: np.ndarray) -> np.ndarray:

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from mpi4py import MPI
 from petsc4py import PETSc
 
 import numpy as np
@@ -91,7 +90,7 @@ def _loading(loads: sp.csc_matrix, comm, dim: int, rows: int = 0) -> Iterator[Co
 
     Every rank calls.
     """
-    used = np.flatnonzero(comm.allreduce(np.diff(loads.indptr) > 0, MPI.LOR))
+    used = np.flatnonzero(sum_over_ranks(comm, np.diff(loads.indptr)))
     for block in blocks(len(used), dim, rows):
         own = used[block]
         first, end = int(own[0]), int(own[-1]) + 1

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermowear.bulk.mechanics.elastic_body import ElasticBody
+from thermowear.bulk.mechanics.elastic_group import ElasticGroup
 from thermowear.case import load
 from thermowear.contact.operators import exchange_matrix
 from thermowear.verification.cases.assembly.clutch_pack import Pack, pack_checks
@@ -43,7 +43,7 @@ def test_sparse_factors_of_the_exchange(monkeypatch):
 
 def test_plates_are_solved_for_their_own_pressures(monkeypatch):
     """requirement: the number of elastic solutions grows linearly with the faces."""
-    counts, solver = {}, ElasticBody.solver_of_columns
+    counts, solver = {}, ElasticGroup.solver_of_columns
 
     def counted(body):
         class Counting:
@@ -62,7 +62,7 @@ def test_plates_are_solved_for_their_own_pressures(monkeypatch):
 
         return Counting()
 
-    monkeypatch.setattr(ElasticBody, "solver_of_columns", counted)
+    monkeypatch.setattr(ElasticGroup, "solver_of_columns", counted)
     for faces in (2, 4, 8):
         pack = replace(SMALL, faces=faces)
         computed(load(pack.tables() | {"analysis": {"type": "initial"}}))

@@ -69,10 +69,11 @@ def draw_sweep(folder: Path) -> list[str]:
     if not record.folders:
         return [f"{folder}: no variant was completed, so nothing is drawn"]
     layout, notes = lay_out(record), []
-    pictures = {"sweep.png": _draw_numbers}
+    pictures = {}
     if _is_pair(record):
         in_space = is_surface(record.folders[0])
         pictures["shapes.png"] = _draw_maps if in_space else _draw_curves
+    pictures["sweep.png"] = _draw_numbers
     for name, draw in pictures.items():
         try:
             draw(layout, folder / name)

@@ -59,7 +59,7 @@ def test_files_by_contact(finished):
     ends = [""]
     if case.analysis.type == "transient":
         ends += [f"_at_{time:g}" for time in case.analysis.output_times]
-        expected |= {"checkpoint.npz", "history.csv"}
+        expected |= {"checkpoint.npz", "history.csv", "contacts.csv"}
         expected |= {"heat.csv"} if case.heat.transient else set()
     expected |= {f"interface_{name}{end}.csv" for name in contacts(case) for end in ends}
     expected |= {f"profile_{name}.csv" for name in contacts(case)}
@@ -101,6 +101,30 @@ def test_the_summary_is_that_of_the_tables(finished):
     heat = [body["contact_heat_W"] for body in summary["bodies"].values() if len(body) > 1]
     if heat:
         assert sum(heat) == pytest.approx(power, rel=1e-9)
+
+
+def test_histories_of_the_contacts_add_up(finished):
+    """requirement: rows of the contacts at each step add up to those of the history."""
+    _, folder = finished
+    if not (folder / "contacts.csv").is_file():
+        return
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    history, rows = tables.read(folder / "history.csv"), tables.read(folder / "contacts.csv")
+    each = [rows.rows(rows["contact"] == k) for k in range(1, len(summary["contacts"]) + 1)]
+    for one in each:
+        np.testing.assert_array_equal(one["time"], history["time"])
+    for name in ("wear_volume_1", "wear_volume_2", "contact_area"):
+        np.testing.assert_allclose(sum(one[name] for one in each), history[name], rtol=1e-12)
+    largest = np.max([one["max_pressure"] for one in each], axis=0)
+    np.testing.assert_allclose(largest, history["max_pressure"], rtol=1e-12)
+    power = sum(one["friction_power"] for one in each)
+    heat = tables.read(folder / "heat.csv")
+    np.testing.assert_allclose(power, heat["friction_power"], rtol=1e-12, atol=1e-9)
+    for one, found in zip(each, summary["contacts"].values(), strict=True):
+        assert one["normal_force"][-1] == pytest.approx(found["normal_force_N"], rel=1e-12)
+        assert one["wear_volume_1"][-1] == pytest.approx(found["wear_volume_1_m3"], rel=1e-12)
+    sides = [one[f"max_temperature_{side}"] for one in each for side in (1, 2)]
+    np.testing.assert_allclose(np.max(sides, axis=0), history["max_temperature"], rtol=1e-12)
 
 
 def test_the_resolved_case_is_the_same_case(finished):

@@ -82,6 +82,8 @@ HEADS = {
     "mean_temperature_2_K",
     "mode": "mode,speed_factor,growth_rate_per_s,frequency_rad_per_s,x_m,y_m,z_m,s_m,pressure,"
     "pressure_imaginary",
+    "contacts": "time_s,contact,normal_force_N,friction_power_W,max_pressure_Pa,contact_area_m2,"
+    "wear_volume_1_m3,wear_volume_2_m3,max_temperature_1_K,max_temperature_2_K",
     "history": "time_s,sliding_distance_m,max_pressure_Pa,contact_area_m2,wear_volume_1_m3,"
     "wear_volume_2_m3,max_temperature_K,approach_m,step_s,error",
 }

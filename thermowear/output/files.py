@@ -111,6 +111,18 @@ def contacts_of(folder: Path) -> list[str]:
     return [str(name) for name in found] if isinstance(found, list) and found else [""]
 
 
+def bodies_of(folder: Path, contact: str = "") -> tuple[str, str]:
+    """Names of the first and the second body of a contact, or of those of all contacts, for labels.
+
+    Those of a pair are "body 1" and "body 2".
+    """
+    contacts = read_summary(folder).get("contacts", {})
+    if not contacts:
+        return "body 1", "body 2"
+    first, second = contacts.get(contact, {}).get("between", ("first bodies", "second bodies"))
+    return first, second
+
+
 def is_ours(path: Path) -> bool:
     """Test whether a file is a result of this program; a report is recognised by its head."""
     name = final_name(path)

@@ -11,7 +11,7 @@ and reports engineering units.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar, dataclass_transform
 
@@ -44,6 +44,7 @@ _IN_KEYS = {
 """SI units by their spelling in the keys of results."""
 _SPELLED = {unit: spelling for spelling, unit in _IN_KEYS.items()}
 _AXISYMMETRIC = {"x": "r", "y": "z"}
+_OF_A_BODY = re.compile(r"_[12](_|$)")
 
 
 def key(name: str, si: str) -> str:
@@ -112,8 +113,19 @@ class Quantity:
 
     @property
     def of_both(self) -> Quantity:
-        """Quantity of both bodies in one plot: the label without the number of the body."""
-        return replace(self, label=re.sub(", body [12]$", "", self.label))
+        """Quantity of both bodies in one plot: the label without the body."""
+        return replace(self, label=self.label.rpartition(", ")[0]) if self.body else self
+
+    @property
+    def body(self) -> str:
+        """Body that a quantity of one of both belongs to, as in its label; empty for others."""
+        of_one = _OF_A_BODY.search(self.header) is not None
+        return self.label.rpartition(", ")[2] if of_one and ", " in self.label else ""
+
+    def of_bodies(self, names: Sequence[str]) -> Quantity:
+        """Quantity whose label calls the first and the second body by their names."""
+        label = re.sub(r", body ([12])$", lambda found: f", {names[int(found[1]) - 1]}", self.label)
+        return replace(self, label=label)
 
     def drawn(self, values):
         """Convert SI values to the unit of plots."""

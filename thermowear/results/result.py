@@ -9,7 +9,7 @@ import numpy as np
 
 from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack, part_of
 from .quantity import from_key, table_of
-from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
+from .rows import ContactRow, CycleRow, HeatRow, HistoryRow, LoadRow
 
 
 @dataclass(frozen=True)
@@ -159,6 +159,8 @@ class Result:
         Fields of the bodies, on rank 0 only.
     contacts : dict of str to slice
         Ranges of the points of each contact of several bodies, by name; empty for a pair.
+    contact_history : list of ContactRow
+        Contacts of several bodies at the steps of a transient analysis.
     """
 
     interface: InterfaceFields
@@ -173,6 +175,7 @@ class Result:
     stopped: BaseException | None = None
     fields: AnyFields | None = None
     contacts: dict[str, slice] = field(default_factory=dict)
+    contact_history: list[ContactRow] = field(default_factory=list)
 
     def tables(self) -> dict[str, Any]:
         """Tables by the names of their files without ``.csv``: points at the end, or rows.
@@ -185,7 +188,7 @@ class Result:
             for name, own in self.contacts.items()
         }
         both = [] if self.contacts else [self.interface, self.profile]
-        found: list = [*both, self.history, self.heat, self.modes]
+        found: list = [*both, self.history, self.heat, self.contact_history, self.modes]
         if self.friction is not None:
             found += [self.friction.last, self.friction.rows, self.friction.cycles]
         if self.track is not None:

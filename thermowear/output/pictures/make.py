@@ -13,7 +13,7 @@ from ...balances import violated
 from ...errors import CaseError, ComputationError
 from ..files import contacts_of, name_at, picture, read_summary
 from ..tables import MissingColumnError
-from . import curves, maps
+from . import curves, maps, over_time
 from .animation import FPS, check_animation, has_frames
 from .modes import draw_modes
 
@@ -31,11 +31,11 @@ _OVER_A_SURFACE: dict[str, Callable[..., None]] = {
 _OF_THE_INTERFACE = ("wear", "coating")
 """Pictures drawn from ``interface.csv`` that have no table of their own."""
 _OTHERS: dict[str, Callable[..., None]] = {
-    "history": curves.draw_history,
-    "heat": curves.draw_heat,
+    "history": over_time.draw_history,
+    "heat": over_time.draw_heat,
     "friction": curves.draw_friction,
-    "loads": curves.draw_loads,
-    "cycles": curves.draw_cycles,
+    "loads": over_time.draw_loads,
+    "cycles": over_time.draw_cycles,
     "track": curves.draw_track,
     "mode": draw_modes,
 }

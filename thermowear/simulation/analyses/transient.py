@@ -10,7 +10,7 @@ import numpy as np
 from ...balances import ALLOWED, require
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
-from ...results import HeatRow, HistoryRow
+from ...results import ContactRow, HeatRow, HistoryRow
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.wider_zone import ends_outside_zone
 from ..heat.friction_heat import FrictionHeat
@@ -18,6 +18,7 @@ from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
 from ..results.coatings import WearingState, layers, times_since_worn_through
+from ..results.contact_rows import contact_rows
 from ..results.recording import Snapshot, snapshot_at
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
@@ -72,7 +73,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         problem = interface_problem(system, observer.note)
         sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
         self.loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
-        self._speed = 0.0
+        self._speed, self._is_pair = 0.0, system.model.is_pair
         self._coated = layers(system).keys()
         self._lost: dict[int, tuple[float, float]] = {}
         self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
@@ -90,7 +91,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         if self.loop.now.problem.heat is not None and own is not None:
             self.loop.now.problem.heat.steps.restore(own)
 
-    def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow]:
+    def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow | ContactRow]:
         problem = self.loop.now.problem
         conditions = problem.conditions(state.state, state.time)
         speed = self._mean(conditions.speed)
@@ -98,12 +99,13 @@ class TransientHistory(AnalysisHistory[Moment]):
         self._speed = speed
         row = self._row(state, slid)
         self._note_lost_layers(conditions, state, slid, row)
+        each = self._contact_rows(conditions, state)
         if problem.heat is None or not problem.stores_heat:
-            return [row]
+            return [row, *each]
         heat = self._heat_row(state, conditions, problem.heat)
         if not heat.balance_error <= ALLOWED:
             require(heat_balance_relative_error=heat.balance_error)
-        return [row, heat]
+        return [row, heat, *each]
 
     def states(self, last: Moment | None) -> Iterator[Moment]:
         """Accepted moments while the faces are below any melting point.
@@ -231,6 +233,15 @@ class TransientHistory(AnalysisHistory[Moment]):
             mean_temperature_1=self._mean(T1),
             mean_temperature_2=self._mean(T2),
         )
+
+    def _contact_rows(self, conditions: InterfaceConditions, moment: Moment) -> list[ContactRow]:
+        """Rows of the contacts of several bodies."""
+        if self._is_pair:
+            return []
+        now = self.loop.now
+        ambient = float("nan") if now.problem.heat is None else now.problem.heat.ambient
+        pressing = self._force_per_pressure(conditions)
+        return contact_rows(now.system, conditions, moment.state, moment.time, ambient, pressing)
 
     def _force_per_pressure(self, conditions: InterfaceConditions) -> np.ndarray:
         """Normal force per pressure at the points (n,) [m²]; those of the last conditions kept."""

@@ -13,6 +13,7 @@ from ...errors import ComputationError, UnwritableError
 from ...interrupts import RecordedSignals
 from ...model.analyses import SteppedAnalysis
 from ...results import (
+    ContactRow,
     CycleRow,
     Frame,
     FrictionHistory,
@@ -230,6 +231,7 @@ class AnalysisHistory(ABC, Generic[State]):
             friction=friction,
             track=track,
             heat=self.table(HeatRow),
+            contact_history=self.table(ContactRow),
             stopped=stopped,
         )
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...errors import CaseError, other_mesh
 from ...results import (
+    ContactRow,
     CycleRow,
     Frame,
     FrictionInterface,
@@ -22,7 +23,7 @@ from ...results import (
 from ...serialise import serialisable
 from ..system.system import System
 
-AnyRow = HistoryRow | HeatRow | LoadRow | CycleRow
+AnyRow = HistoryRow | HeatRow | ContactRow | LoadRow | CycleRow
 
 _ROUNDING = 1e-9  # relative to the contact's length
 

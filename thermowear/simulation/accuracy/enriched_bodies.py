@@ -20,7 +20,7 @@ from ...bulk.mechanics.surplus import surplus_spaces
 from ...contact.operators.heat import BaselineResponse
 from ...contact.operators.heat_exchange import InterfaceHeat
 from ...contact.operators.pressure import dense, scaled
-from ...contact.operators.traces import gap_trace, value_trace, vector_trace
+from ...contact.operators.traces import face_traces, gap_trace, vector_trace
 from ...model.conditions import Heat
 from ...parallel import sum_over_ranks
 from ..heat.friction_heat import TemperatureField
@@ -102,8 +102,9 @@ class EnrichedBodies:
                 for space in (problem.spaces, problem.surplus)
             ]
         )
-        for works in surface_loads(system.model.holder, system.elastic):
-            loads = loads + problem.loads(works)
+        for holder in system.model.holders:
+            for works in surface_loads(holder, system.elastic):
+                loads = loads + problem.loads(works)
         return loads
 
 
@@ -115,13 +116,11 @@ def temperature_change(
     conductance: np.ndarray,
 ) -> TemperatureChange:
     """Change of steady temperatures by the next degree for a given friction heat; collective."""
-    conduction, face, pairing = thermal.conduction, thermal.face, system.pairing
+    conduction, face = thermal.conduction, thermal.face
     assert isinstance(face, InterfaceHeat)
     problem = _conducting(system, heat, thermal)
-    traces = [
-        sp.vstack([trace, value_trace(problem.surplus, side)])
-        for trace, side in zip(face.traces, pairing.sides, strict=True)
-    ]
+    details = face_traces(problem.surplus, system.contacts)
+    traces = [sp.vstack(both) for both in zip(face.traces, details, strict=True)]
     fluxes = zip(traces, temperatures.faces.flux, strict=True)
     loads = np.sum([trace @ (face.weights * flux) for trace, flux in fluxes], axis=0)
     nodal = loads[: conduction.spaces.owned]
@@ -137,8 +136,8 @@ def temperature_change(
     none = np.zeros(len(face.weights))
     coupled = exchange.state(none, BaselineResponse((resolved[:, 0], resolved[:, 1])))
     change[: conduction.spaces.owned] += conduction.respond(face.nodal_heat(coupled, bath=True))
-    details = _levelled(uncoupled - resolved.T, face, conductance)
-    return TemperatureChange(np.array(coupled.rise) + details, problem.functions(before + change))
+    finer = _levelled(uncoupled - resolved.T, face, conductance)
+    return TemperatureChange(np.array(coupled.rise) + finer, problem.functions(before + change))
 
 
 def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -> np.ndarray:
@@ -168,8 +167,11 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
         ]
         for body in bodies.each
     ]
-    at_faces = zip(model.interface.faces, thermal.face.shifts, strict=True)
-    shifts = {name: float(shift[0]) for name, shift in at_faces}
+    shifts = {
+        name: float(shift[points.start])
+        for interface, points in zip(model.interfaces, system.contacts.ranges, strict=True)
+        for name, shift in zip(interface.faces, thermal.face.shifts, strict=True)
+    }
     bath = [transferring(body, kinematics, shifts) for body in bodies.each]
     left_out = *heat.temperature, *conduction.joints.surfaces
     given, _ = given_rises(bodies, surplus, dict.fromkeys(left_out, 0.0), None)

@@ -205,9 +205,8 @@ def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Obse
     """Add discretisation error estimates to the summary; note large ones. Every rank calls."""
     if result.stopped is not None:
         return result
-    several = not end.system.model.is_pair
-    if several or end.system.choice.iterative:
-        why = "in models of several bodies" if several else "where bodies are solved by multigrid"
+    if end.system.choice.iterative:
+        why = "where bodies are solved by multigrid"
         observer.note(f"the discretisation error is not estimated {why}")
         missing = {"error_estimate_missing": {"all": f"not estimated {why}"}}
         return replace(result, summary=result.summary | missing)

@@ -21,7 +21,7 @@ from ...model.model import Discretisation, Model, Zone
 from ...model.relative_motion import relative_motion
 from ...model.tie import Tie, glued_bodies, with_glued
 from ...model.tracks import EvenTrack, Track
-from .model import attributes, body_wear, conductance, material
+from .model import attributes, body_wear, conductance, fluid, material
 
 
 def assembly_of(case: AssemblyCase) -> Model:
@@ -119,6 +119,7 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
             if body in case.wear
         },
         compliance=table.compliance or 0.0,
+        fluid_pressure=fluid(table, f"contacts.{name}"),
         pressure_degree=table.pressure_degree,
     )
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import CaseError
 from .expressions import Expression
 from .formulas import PlainFunction
 
@@ -24,15 +23,12 @@ class PlaceFunction:
     ----------
     formula : Expression or PlainFunction
         Value in some of the variables of `PLACE`.
-    name : str
-        Path of its key, for messages.
     """
 
     formula: Expression | PlainFunction
-    name: str
 
     @classmethod
-    def of(cls, given: float | Callable[..., np.ndarray], name: str) -> PlaceFunction:
+    def of(cls, given: float | Callable[..., np.ndarray]) -> PlaceFunction:
         """Wrap a number, or a function of arrays of some of the coordinates.
 
         Raises
@@ -41,27 +37,25 @@ class PlaceFunction:
             If the function has other parameters.
         """
         if callable(given):
-            return cls(PlainFunction.of(given, tuple(PLACE)), name)
-        return cls(Expression(str(given), float(given), frozenset()), name)
+            return cls(PlainFunction.of(given, tuple(PLACE)))
+        return cls(Expression(str(given), float(given), frozenset()))
 
     def at(self, points: np.ndarray, axisymmetric: bool) -> np.ndarray:
         """Values (n,) at points (n, gdim); those below zero by rounding only are 0.
 
         Raises
         ------
-        CaseError
+        ValueError
             If a value is negative or not finite, or z occurs in a section.
         """
         places = dict(zip("xyz", points.T, strict=False))
         places["r"] = places["x"] if axisymmetric else np.hypot(places["x"], places["y"])
         if not self.formula.variables <= places.keys():
-            raise CaseError(f"{self.name}: z is a coordinate of 3d models only")
+            raise ValueError("z is a coordinate of 3d models only")
         found = self.formula.value(places)
         wrong = ~(found >= -_ROUNDING * np.abs(found).max()) | ~np.isfinite(found)
         if wrong.any():
             first = int(np.argmax(wrong))
             where = ", ".join(f"{key} = {values[first]:.6g} m" for key, values in places.items())
-            raise CaseError(
-                f"{self.name}: {found[first]:.4g} at {where}; must be finite and at least 0"
-            )
+            raise ValueError(f"{found[first]:.4g} at {where}; must be finite and at least 0")
         return np.maximum(found, 0.0)

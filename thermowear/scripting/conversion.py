@@ -99,10 +99,10 @@ def place_function(given: Any, name: str) -> PlaceFunction | None:
     """Pressure from a number, an expression with units, or a function of x, y, z and r."""
     with _faults_of(name):
         if isinstance(given, str):
-            return PlaceFunction(expression(given, "Pa", tuple(PLACE)), name)
-        if given is None or callable(given):
-            return given and PlaceFunction.of(given, name)
-    return PlaceFunction.of(number(given, name, least=0.0), name)
+            return PlaceFunction(expression(given, "Pa", tuple(PLACE)))
+        if given is None:
+            return None
+        return PlaceFunction.of(given if callable(given) else number(given, name, least=0.0))
 
 
 @contextmanager

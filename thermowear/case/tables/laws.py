@@ -23,7 +23,7 @@ from ...laws.coefficients import Constant, Table1D
 from ...laws.expressions import Expression
 from ...laws.formulas import FormulaLaw, FormulaWear
 from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law, Role, registered_laws
-from ...laws.place import PLACE
+from ...laws.place import PLACE, PlaceFunction
 from ...laws.plausible import require_interface_law, require_wear_rate
 from ..values import units
 from ..values.section import KeyFault, Number, Section
@@ -209,10 +209,10 @@ def _wear(given: Any) -> Any:
 
 
 def _fluid(given: Any) -> Any:
-    if isinstance(given, Expression):
+    if isinstance(given, PlaceFunction):
         return given
     if isinstance(given, str):
-        return expression(given, "Pa", tuple(PLACE))
+        return PlaceFunction(expression(given, "Pa", tuple(PLACE)))
     return _PRESSURE.validate_python(given)  # names the missing unit
 
 
@@ -230,7 +230,9 @@ Friction = Annotated[
     float | Expression | LawTable, PlainValidator(_friction), PlainSerializer(_written)
 ]
 """Coefficient of friction: a number, an expression in p, v and T, or a registered law."""
-FluidPressure = Annotated[Expression, PlainValidator(_fluid), PlainSerializer(_written)]
+FluidPressure = Annotated[
+    PlaceFunction, PlainValidator(_fluid), PlainSerializer(lambda value: value.formula.text)
+]
 """Pressure, or expression in x, y, z and r [Pa]."""
 RateOfWear = Annotated[Expression | LawTable, PlainValidator(_wear), PlainSerializer(_written)]
 """Wear rate: an expression in p, v, T, depth and mu [m/s], or a registered law."""

@@ -21,7 +21,7 @@ from ...model.model import Discretisation, Model, Zone
 from ...model.relative_motion import relative_motion
 from ...model.tie import Tie, glued_bodies, with_glued
 from ...model.tracks import EvenTrack, Track
-from .model import attributes, body_wear, conductance, fluid, material
+from .model import attributes, body_wear, conductance, material
 
 
 def assembly_of(case: AssemblyCase) -> Model:
@@ -119,7 +119,7 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
             if body in case.wear
         },
         compliance=table.compliance or 0.0,
-        fluid_pressure=fluid(table, f"contacts.{name}"),
+        fluid_pressure=table.fluid_pressure,
         pressure_degree=table.pressure_degree,
     )
 
@@ -153,7 +153,7 @@ def _wear(case: AssemblyCase, face: str, table: AssemblyContactTable) -> Wear:
 
 
 def _track(case: AssemblyCase, body: str, face: str) -> Distribution | Track:
-    """Where a face of a body wears."""
+    """Distribution of the wear of a face of a body."""
     geometry = case.geometry
     if case.wear[body].spread == "in-place":
         return IN_PLACE

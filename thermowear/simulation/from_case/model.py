@@ -30,7 +30,6 @@ from ...laws.coefficients import Multipliers
 from ...laws.distribution import IN_PLACE, Distribution, InPlace
 from ...laws.interfaces import Law
 from ...laws.layered_wear import LayeredWear
-from ...laws.place import PlaceFunction
 from ...laws.power_wear import PowerWear
 from ...model.body import Body, Material
 from ...model.conditions import Heat, Holder, Motion
@@ -196,7 +195,7 @@ def _interface(case: Case) -> Interface:
         wear=_wear(case),
         closes_by_wear=not isinstance(case.analysis, Fretting),
         compliance=contact.compliance or 0.0,
-        fluid_pressure=fluid(contact, "contact"),
+        fluid_pressure=contact.fluid_pressure,
         initial_shape=case.geometry.initial_shape,
         pressure_degree=contact.pressure_degree,
         method=ContactMethod(
@@ -220,12 +219,6 @@ def conductance(given: Any, path: str) -> Law | HardnessConductance | None:
     if isinstance(given, PressureConductanceTable):
         return HardnessConductance(given.coefficient)
     return None if given is None else law_of(given, path, 0.0)
-
-
-def fluid(contact: InterfaceTable, path: str) -> PlaceFunction | None:
-    """Pressure of the fluid between the faces of the contact of a table."""
-    given = contact.fluid_pressure
-    return None if given is None else PlaceFunction(given, f"{path}.fluid_pressure")
 
 
 def _wear(case: Case) -> dict[int, Wear]:

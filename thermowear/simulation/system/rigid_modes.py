@@ -11,6 +11,7 @@ from ...bulk.mechanics.elasticity import Elasticity
 from ...contact.operators.rigid_motion import RigidMode, hold
 from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import Pairing
+from ...errors import CaseError
 from ...laws.motions import RigidMotion, rotation, translation
 from ...model.body import Body
 from ...model.conditions import Holder
@@ -146,19 +147,17 @@ def fluid_pressure(model: Model, contacts: Contacts) -> np.ndarray | None:
     CaseError
         If it is negative or not finite at a point.
     """
-    given = [interface.fluid_pressure for interface in model.interfaces]
-    if not any(given):
+    if all(interface.fluid_pressure is None for interface in model.interfaces):
         return None
     axisymmetric = model.kinematics == "axisymmetric"
-    parts = zip(given, contacts.each, strict=True)
-    return np.concatenate(
-        [
-            np.zeros(len(pairing.weights))
-            if pressure is None
-            else pressure.at(pairing.points, axisymmetric)
-            for pressure, pairing in parts
-        ]
-    )
+    found = np.zeros(len(contacts.weights))
+    for interface, (pairing, own) in zip(model.interfaces, contacts, strict=True):
+        if interface.fluid_pressure is not None:
+            try:
+                found[own] = interface.fluid_pressure.at(pairing.points, axisymmetric)
+            except ValueError as error:
+                raise CaseError(f"{interface.table}.fluid_pressure: {error}") from None
+    return found
 
 
 def surface_loads(holder: Holder, elastic: Elasticity) -> list[list[Callable]]:

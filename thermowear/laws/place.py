@@ -13,6 +13,7 @@ from .formulas import PlainFunction
 PLACE = {"x": "m", "y": "m", "z": "m", "r": "m"}
 """Coordinates with their units; r is the distance from the axis of rotation, along y or z."""
 _ROUNDING = 1e-9
+"""Negative values of this size relative to the largest one count as 0."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,8 @@ class PlaceFunction:
         if not self.formula.variables <= places.keys():
             raise ValueError("z is a coordinate of 3d models only")
         found = self.formula.value(places)
-        wrong = ~(found >= -_ROUNDING * np.abs(found).max()) | ~np.isfinite(found)
+        wrong = ~(found >= -_ROUNDING * np.nanmax(np.abs(found), initial=0.0))
+        wrong |= ~np.isfinite(found)
         if wrong.any():
             first = int(np.argmax(wrong))
             where = ", ".join(f"{key} = {values[first]:.6g} m" for key, values in places.items())

@@ -61,8 +61,8 @@ def test_blocks_share_the_load_with_the_fluid(method, pressure):
     assert numbers["approach_m"] == pytest.approx(expected, rel=1e-9 if exact else 5e-3, abs=0.0)
 
 
-def test_friction_wear_and_heat_follow_the_contact_pressure():
-    """requirement: in time the fluid neither rubs nor wears: k (F/A - p_f) v t, mu (F - p_f A)."""
+def test_wear_in_time_follows_the_contact_pressure():
+    """requirement: the fluid does not wear: depth k (F/A - p_f) v t."""
     changes = {
         "load": PRESSED["load"],
         "contact": {"fluid_pressure": "1 MPa", "friction": 0.0},
@@ -73,6 +73,27 @@ def test_friction_wear_and_heat_follow_the_contact_pressure():
     result = run(BLOCKS, changes)
     np.testing.assert_allclose(result.interface.pressure, MEAN - 1e6, rtol=1e-9)
     np.testing.assert_allclose(result.interface.wear_1, 1e-14 * (MEAN - 1e6) * 10.0, rtol=1e-9)
+
+
+def test_friction_heat_follows_the_contact_pressure():
+    """requirement: the fluid does not rub: heat mu w r_m (F - p_f A), all of it into the rings."""
+    found = tw.run(tw.load(seal.tables(elements=4, fluid="0.05 MPa"))).summary
+    contact = found["contacts"]["ring-seat"]
+    force = seal.FORCE - 0.05e6 * np.pi * (seal.OUTER**2 - seal.INNER**2)
+    power = seal.FRICTION * seal.SPEED * (seal.OUTER + seal.INNER) / 2 * force
+    assert contact["friction_power_W"] == pytest.approx(power, rel=1e-9)
+    into = contact["contact_heat_1_W"] + contact["contact_heat_2_W"]
+    assert into == pytest.approx(power, rel=1e-9)
+
+
+def test_running_in_ends_in_the_steady_state():
+    """requirement: wear under the fluid leads to the pressure and shape of the principle."""
+    tables = wet_seal(LINEAR)
+    steady = tw.run(tw.load(tables)).interface
+    tables["analysis"] = {"type": "transient", "end_time": "1e6 s", "tolerance": 1e-3}
+    worn = tw.run(tw.load(tables)).interface
+    np.testing.assert_allclose(worn.pressure, steady.pressure, rtol=1e-3)
+    np.testing.assert_allclose(worn.shape, steady.shape, atol=1e-3 * np.ptp(steady.shape))
 
 
 def test_fluid_in_an_open_contact():

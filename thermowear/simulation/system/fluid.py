@@ -15,6 +15,8 @@ from ...laws.principle.steady import NotCarried, not_carried
 from .rigid_modes import fluid_pressure
 from .system import System
 
+_NOTHING = 1e-9  # of the largest load
+
 
 def fluid_forces(system: System) -> dict[int, float]:
     """Opening force of the fluid along the load direction by interface, where it is given [N]."""
@@ -55,7 +57,7 @@ def parted_by_fluid(system: System, load: np.ndarray) -> ComputationError | None
     loads = [
         f"{force:.4g} {'N m' if mode.motion.rotation.any() else 'N'}"
         for mode, force in zip(_free(system), closing, strict=True)
-        if force
+        if abs(force) > _NOTHING * np.abs(closing).max()
     ]
     table = model.interfaces[max(forces, key=lambda index: forces[index])].table
     return NotCarried(

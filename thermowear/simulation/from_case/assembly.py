@@ -153,7 +153,7 @@ def _wear(case: AssemblyCase, face: str, table: AssemblyContactTable) -> Wear:
 
 
 def _track(case: AssemblyCase, body: str, face: str) -> Distribution | Track:
-    """Distribution of the wear of a face of a body."""
+    """Track over which the wear of a face of a body is spread, or its distribution."""
     geometry = case.geometry
     if case.wear[body].spread == "in-place":
         return IN_PLACE

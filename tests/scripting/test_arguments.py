@@ -75,6 +75,9 @@ def changed(ring, **face):
         ({"friction": lambda v: -v}, r"^Interface\.friction: .*greater than 0"),
         ({"conductance": "1e4 W/m"}, r"^Interface\.conductance: "),
         ({"compliance": "1 m"}, r"^Interface\.compliance: "),
+        ({"fluid_pressure": "1 N"}, r"^Interface\.fluid_pressure: .*needs Pa"),
+        ({"fluid_pressure": -1.0}, r"^Interface\.fluid_pressure: .*from 0"),
+        ({"fluid_pressure": lambda p: p}, r"^Interface\.fluid_pressure: .*parameter 'p'"),
     ],
 )
 def test_faults_of_laws(ring, face, message):

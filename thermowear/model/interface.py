@@ -17,6 +17,7 @@ from ..laws.coefficients import (
     harmonic_mean,
 )
 from ..laws.interfaces import Law
+from ..laws.place import PlaceFunction
 from ..laws.plausible import typical_value
 from ..laws.time_course import TimeFunction
 from .body import WHY, Facing, Material
@@ -103,6 +104,8 @@ class Interface:
         continued sliding; False if by elastic deflection, as in fretting.
     compliance : float
         Compliance of a soft layer between the faces [m/Pa].
+    fluid_pressure : PlaceFunction or None
+        Pressure of a fluid on both faces, touching or open, besides that of the contact [Pa].
     initial_shape : str or None
         File with an initial worn shape.
     pressure_degree : int, str or None
@@ -125,6 +128,7 @@ class Interface:
     wear: Mapping[int, Wear] = field(default_factory=dict)
     closes_by_wear: bool = True
     compliance: float = 0.0
+    fluid_pressure: PlaceFunction | None = None
     initial_shape: str | None = None
     pressure_degree: int | Literal["lobatto"] | None = None
     method: ContactMethod = field(default_factory=ContactMethod)

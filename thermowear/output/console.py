@@ -91,6 +91,7 @@ _PLAIN: dict[str, Any] = {"box": None, "padding": (0, 2, 0, 0)}
 _OF_PARTS = {
     "contacts": (
         "normal_force_N",
+        "fluid_force_N",
         "friction_torque_Nm",
         "max_pressure_Pa",
         "shape_range_m",

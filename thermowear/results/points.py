@@ -48,6 +48,13 @@ class InterfaceFields:
     coating_left_2: np.ndarray = column(
         "coating left, body 2", "m", "µm", "of all layers; only of coated faces", optional=True
     )
+    fluid_pressure: np.ndarray = column(
+        "fluid pressure",
+        "Pa",
+        "MPa",
+        "besides the contact pressure; only where it is given",
+        optional=True,
+    )
 
 
 @table(

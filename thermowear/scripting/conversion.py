@@ -15,6 +15,7 @@ from ..laws import layered_wear, power_wear, time_course
 from ..laws.coefficients import Constant, Table1D
 from ..laws.formulas import FormulaLaw, FormulaWear, interface_law, wear_rate
 from ..laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
+from ..laws.place import PLACE, PlaceFunction
 from ..laws.plausible import require_interface_law
 from ..laws.time_course import TimeFunction
 from ..model import body, conditions, interface
@@ -92,6 +93,16 @@ def rate_law(given: Any, name: str) -> Law:
         if isinstance(given, str):
             given = FormulaWear(expression(given, "m/s", WEAR_VARIABLES), name)
         return wear_rate(given)
+
+
+def place_function(given: Any, name: str) -> PlaceFunction | None:
+    """Pressure from a number, an expression with units, or a function of x, y, z and r."""
+    with _faults_of(name):
+        if isinstance(given, str):
+            return PlaceFunction(expression(given, "Pa", tuple(PLACE)))
+        if given is None:
+            return None
+        return PlaceFunction.of(given if callable(given) else number(given, name, least=0.0))
 
 
 @contextmanager

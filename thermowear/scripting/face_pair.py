@@ -15,7 +15,7 @@ from ..model.conditions import Motion
 from ..model.face_wear import CompositeWear, FaceWear, Wear
 from ..model.interface import ContactMethod, HardnessConductance, Interface
 from .body import BodySurface, MeshBody, require_surface
-from .conversion import coefficient_law, number, quantities, rate_law
+from .conversion import coefficient_law, number, place_function, quantities, rate_law
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +38,9 @@ class FacePair:
         thermal effusivities of both.
     gap_conductance, compliance, transverse_friction, pressure_degree, method
         See `model.interface.Interface`.
+    fluid_pressure : float, str, callable or None
+        Pressure of a fluid on both faces, touching or open: a number, an expression, or a function
+        of some of x, y, z, r [Pa].
     friction_history : TimeFunction or None
         Time-dependent factor of the friction.
     name : str
@@ -52,6 +55,7 @@ class FacePair:
     gap_conductance: Any = 0.0
     partition: float | Literal["effusivity"] = 0.5
     compliance: Any = 0.0
+    fluid_pressure: Any = None
     transverse_friction: float = 0.0
     friction_history: TimeFunction | None = None
     pressure_degree: int | Literal["lobatto"] | None = None
@@ -109,6 +113,7 @@ class FacePair:
             transverse_friction=number(self.transverse_friction, "Interface.transverse_friction"),
             conductance=given,
             partition=self._into_body_1(first),
+            fluid_pressure=place_function(self.fluid_pressure, "Interface.fluid_pressure"),
             wear=dict(sorted(wear.items())),
             closes_by_wear=closes_by_wear,
             **quantities("Interface", kinds, settings),

@@ -22,7 +22,14 @@ _PARTITION = number_or(
 )
 
 
-_OF_SLIDING = ("friction", "friction_factor", "friction_history", "partition", "compliance")
+_OF_SLIDING = (
+    "friction",
+    "friction_factor",
+    "friction_history",
+    "partition",
+    "compliance",
+    "fluid_pressure",
+)
 """Keys without a meaning for glued faces."""
 
 

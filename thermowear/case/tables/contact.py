@@ -12,7 +12,7 @@ from ...laws.interfaces import Law
 from ...laws.plausible import typical_value
 from ..values import units
 from ..values.section import Number, Section, Switch, number_or
-from .laws import Friction, law_of
+from .laws import FluidPressure, Friction, law_of
 from .tabulated import FactorHistory, MultiplierTables
 
 _PRESSURE_DEGREE = number_or(
@@ -44,6 +44,7 @@ class InterfaceTable(Section):
     friction_history: FactorHistory | None = None
     transverse_friction: Annotated[Number, Field(ge=0.0)] = 0.0
     compliance: units.Compliance | None = None
+    fluid_pressure: FluidPressure | None = None
     pressure_degree: Annotated[int | Literal["lobatto"] | None, _PRESSURE_DEGREE] = None
 
     @property

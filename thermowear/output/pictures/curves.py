@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -29,8 +30,8 @@ _DIRECTIONS = (("shape", "height of the unloaded face"), ("wear_rate", "wear rat
 
 
 def interface_panels(data: tables.TableColumns) -> list[list[str]]:
-    """Columns of ``interface.csv`` to draw, by panel: pressure, temperatures, shape if worn."""
-    shown = [["pressure"]]
+    """Columns of ``interface.csv`` to draw, by panel: pressures, temperatures, shape if worn."""
+    shown = [[name for name in ("pressure", "fluid_pressure") if name in data]]
     if np.isfinite(data["temperature_1"]).all():
         shown.append(["temperature_1", "temperature_2"])
     if np.ptp(data["shape"]) > _FLAT:
@@ -58,8 +59,12 @@ def draw_interface(folder: Path, contact: str = "") -> None:
     with column(folder / picture("interface", contact), len(shown), 2.3) as axes:
         for axis, names in zip(axes, shown, strict=True):
             for name, color, line in zip(names, BODIES, ("-", "--"), strict=False):
-                plot_along(axis, data, name, line, color=color, label=data.quantities[name].body)
-            axis.set_ylabel(data.quantities[names[0]].of_both.wrapped)
+                label = data.quantities[name].label.split(", ")[-1]
+                plot_along(axis, data, name, line, color=color, label=label)
+            both = data.quantities[names[0]].of_both
+            if "fluid_pressure" in names:
+                both = replace(both, label="pressure")
+            axis.set_ylabel(both.wrapped)
             if len(names) > 1:
                 axis.legend()
         from_zero(axes[0])

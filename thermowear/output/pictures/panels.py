@@ -37,6 +37,7 @@ COLORS = {
     "temperature": "inferno",
     "von_mises": "viridis",
     "pressure": "viridis",
+    "fluid_pressure": "viridis",
     "shape": "cividis",
     "wear": "magma_r",
     "coating_left": "cividis",

@@ -26,7 +26,7 @@ from ...parallel import sum_over_ranks
 from ..heat.friction_heat import TemperatureField
 from ..interface.body_state import BodyState, ContactState
 from ..system.building import supports
-from ..system.rigid_modes import surface_loads
+from ..system.rigid_modes import fluid_pressure, surface_loads
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem, conducting_parts, cooling
 
@@ -93,9 +93,12 @@ class EnrichedBodies:
         return sum_over_ranks(self._system.comm, self._trace.T @ field)
 
     def _loads(self, contact: ContactState) -> np.ndarray:
-        """Nodal loads of the contact and of the surface loads in the enriched space."""
+        """Nodal loads of the contact, fluid and surface loads in the enriched space."""
         system, problem = self._system, self._problem
         traction = contact.traction(system.with_friction(contact.conditions.friction))
+        fluid = fluid_pressure(system.model, system.contacts)
+        if fluid is not None:
+            traction = traction + fluid[:, None] * system.contacts.normals
         loads = np.concatenate(
             [
                 vector_trace(space, system.contacts, traction) @ system.weights

@@ -234,7 +234,7 @@ def _finer_principle(system: System, contact: ContactState) -> np.ndarray:
     if any("T" in law.variables for law in system.laws.values()):
         raise ComputationError("not estimated where wear depends on the temperature")
     coarse, fine = (
-        principle(each, each.holder.load, speed=each.speed, friction=each.friction)
+        principle(each, contact.conditions.load, speed=each.speed, friction=each.friction)
         for each in (system, _finer(system))
     )
     velocity = system.holder.modes @ coarse.velocity

@@ -50,20 +50,33 @@ def require_support(system: System) -> None:
     )
 
 
+def require_no_fluid(system: System, analysis: Analysis) -> None:
+    """Reject a fluid between the faces in analyses of faces that move back and forth.
+
+    Raises
+    ------
+    CaseError
+    """
+    wet = [one.table for one in system.model.interfaces if one.fluid_pressure is not None]
+    if wet and analysis.type in ("fretting", "reciprocating"):
+        text = f"is not supported in a {analysis.type} analysis"
+        raise CaseError(f"{wet[0]}.fluid_pressure: {text}")
+
+
 def moved_against_load(
     system: System, analysis: Analysis, end: Snapshot
 ) -> ComputationError | None:
     """Error for a holder that has moved against its load; None if it has not.
 
-    Without heat and loads on surfaces, ``F·d = ∫ p g dA + ∫ p A p dA``: the loads do positive work
-    on the holder unless the drawn faces overlap.
+    Without heat, fluid and loads on surfaces, ``F·d = ∫ p g dA + ∫ p A p dA``: the loads do
+    positive work on the holder unless the drawn faces overlap.
     """
     if not system.model.is_pair:
         return None
     holder, pairing = system.model.holder, system.pairing
     if analysis.type not in _ANALYSES or system.thermal is not None or holder.surface_forces:
         return None
-    if holder.force is None or system.worn is not None:
+    if holder.force is None or system.worn is not None or system.model.interface.fluid_pressure:
         return None
     back = -applied(holder, end.motions[0]) / holder.force
     if back <= _BACK * pairing.extent:

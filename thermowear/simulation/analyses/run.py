@@ -37,6 +37,7 @@ from .checks import (
     inclined_faces,
     moved_against_load,
     open_contact,
+    require_no_fluid,
     require_support,
 )
 from .positioning import prepare
@@ -129,6 +130,7 @@ def analyse(
         )
     system = wearing_faces(system, analysis, observer)
     require_support(system)
+    require_no_fluid(system, analysis)
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:
             observer.note(note)

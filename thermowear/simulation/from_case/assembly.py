@@ -119,6 +119,7 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
             if body in case.wear
         },
         compliance=table.compliance or 0.0,
+        fluid_pressure=table.fluid_pressure,
         pressure_degree=table.pressure_degree,
     )
 

@@ -195,6 +195,7 @@ def _interface(case: Case) -> Interface:
         wear=_wear(case),
         closes_by_wear=not isinstance(case.analysis, Fretting),
         compliance=contact.compliance or 0.0,
+        fluid_pressure=contact.fluid_pressure,
         initial_shape=case.geometry.initial_shape,
         pressure_degree=contact.pressure_degree,
         method=ContactMethod(

@@ -16,6 +16,7 @@ from ...contact.solvers.signorini import (
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
 from ...errors import ComputationError
+from ..system.fluid import parted_by_fluid
 from ..system.system import System
 from .contact_solver import ContactSolution
 
@@ -81,7 +82,9 @@ class CondensedMethod:
             return self._balanced(gap, slope, guess, conditions, heat, pointwise)
         except NoEquilibrium as error:
             cold = _LOCKED if conditions.friction.any() else _TIPPED
-            raise ComputationError(f"{error}; {cold if heat is None else _HOT}") from None
+            text = f"{error}; {cold if heat is None else _HOT}"
+            parted = parted_by_fluid(self._system, conditions.load)
+            raise parted or ComputationError(text) from None
 
     def _balanced(
         self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise

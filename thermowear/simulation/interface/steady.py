@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...laws.principle.steady import SteadyWear, steady_pressure
+from ...laws.principle.steady import NotCarried, SteadyWear, steady_pressure
 from ..heat.friction_heat import friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
+from ..system.fluid import parted_by_fluid
 from ..system.system import System
 from .body_state import ContactState
 from .fixed_point import Trial, self_consistent
@@ -73,12 +74,15 @@ def steady_state(system: System) -> SteadyState:
 
 def principle(system: System, load: np.ndarray, **conditions) -> SteadyWear:
     """Solve the principle under a load on the holder and conditions as in `steady_pressure`."""
-    return steady_pressure(
-        weights=system.weights,
-        normal_modes=system.holder.modes,
-        force_modes=system.holder.force_modes,
-        load=load,
-        laws=list(system.laws.values()),
-        spread=list(system.spreads.values()),
-        **conditions,
-    )
+    try:
+        return steady_pressure(
+            weights=system.weights,
+            normal_modes=system.holder.modes,
+            force_modes=system.holder.force_modes,
+            load=load,
+            laws=list(system.laws.values()),
+            spread=list(system.spreads.values()),
+            **conditions,
+        )
+    except NotCarried as error:
+        raise parted_by_fluid(system, load) or error from None

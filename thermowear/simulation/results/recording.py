@@ -28,6 +28,7 @@ from ...results import (
 from ..interface.body_state import BodyState, ContactState, body_state
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
+from ..system.rigid_modes import fluid_pressure
 from ..system.system import System
 from .cell_grids import GRIDS, divisions
 from .coatings import coating_left
@@ -151,12 +152,21 @@ def record(
         wear_rate_2=rates[1],
         coating_left_1=left[0],
         coating_left_2=left[1],
+        fluid_pressure=_fluid(system),
         temperature_1=temperatures[0],
         temperature_2=temperatures[1],
         heat_flux_1=fluxes[0],
         heat_flux_2=fluxes[1],
     )
     return Snapshot(system, contact, motions, bodies, interface)
+
+
+def _fluid(system: System) -> np.ndarray:
+    """Pressure of the fluid at the points, shape (n,); NaN in contacts without one [Pa]."""
+    found = fluid_pressure(system.model, system.contacts)
+    wet = [one.fluid_pressure is not None for one in system.model.interfaces]
+    inside = system.contacts.per_point(wet) > 0
+    return np.where(inside, np.nan if found is None else found, np.nan)
 
 
 def _local_rates(system: System, contact: ContactState) -> np.ndarray:

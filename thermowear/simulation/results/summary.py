@@ -14,6 +14,7 @@ from ...model.conditions import Holder
 from ...model.interface import Interface
 from ...model.model import Model
 from ...results import Result
+from ..system.fluid import fluid_forces
 from ..system.rigid_modes import applied, guides
 from ..system.system import System
 from .coatings import layer_volumes
@@ -101,10 +102,11 @@ def _of_interface(end: Snapshot, index: int) -> dict:
     worn = p > 0
     depths = np.array([fields.wear_1, fields.wear_2])
     volumes = (system.worn_areas * (depths - system.moved))[:, own].sum(axis=1) + system.lost
-    constant = isinstance(interface.friction, Constant)
+    constant, fluid = isinstance(interface.friction, Constant), fluid_forces(system)
     return {
         "friction": interface.nominal_friction if constant else None,
         "normal_force_N": float(system.force_per_pressure[own] @ p),
+        **({"fluid_force_N": fluid[index]} if index in fluid else {}),
         "friction_force_N": float(w @ friction),
         "friction_torque_Nm": _torque(system.model, interface, pairing, friction),
         "max_pressure_Pa": float(p.max()),

@@ -100,7 +100,7 @@ def build(
             made_from.elasticity,
             lambda: elastic_system(model, kinematics, bodies, contacts, choice, glued),
         )
-    dead = dead_load(model.holders, elastic)
+    dead = dead_load(model, contacts, elastic, trace)
     driven = rigid_modes(
         model.holders, contacts, lambda motion: dead_resultant(elastic, model.bodies, dead, motion)
     )

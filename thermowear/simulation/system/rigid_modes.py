@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
+import scipy.sparse as sp
 
 from ...bulk.mechanics.elasticity import Elasticity
 from ...contact.operators.rigid_motion import RigidMode, hold
 from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import Pairing
+from ...errors import CaseError
 from ...laws.motions import RigidMotion, rotation, translation
 from ...model.body import Body
 from ...model.conditions import Holder
@@ -125,11 +127,37 @@ def _closes(turn: RigidMotion, holder: Holder, contacts: Contacts) -> bool:
     return bool(contacts.weights @ closing >= 0.0)
 
 
-def dead_load(holders: Sequence[Holder], elastic: Elasticity) -> np.ndarray | None:
-    """Nodal forces of the loads on surfaces, shape (n_owned,) [N]; None without surface loads."""
-    each = (works for holder in holders for works in surface_loads(holder, elastic))
+def dead_load(
+    model: Model, contacts: Contacts, elastic: Elasticity, trace: sp.csr_matrix
+) -> np.ndarray | None:
+    """Nodal forces of loads on surfaces and of fluids, shape (n_owned,) [N]; None without them."""
+    each = (works for holder in model.holders for works in surface_loads(holder, elastic))
     loads = [elastic.spaces.loads(works) for works in each]
+    fluid = fluid_pressure(model, contacts)
+    if fluid is not None:
+        loads.append(trace @ (contacts.weights * fluid))
     return np.sum(loads, axis=0) if loads else None
+
+
+def fluid_pressure(model: Model, contacts: Contacts) -> np.ndarray | None:
+    """Pressure of fluids on the contact faces, shape (n,) [Pa]; None without any.
+
+    Raises
+    ------
+    CaseError
+        If it is negative or not finite at a point.
+    """
+    if all(interface.fluid_pressure is None for interface in model.interfaces):
+        return None
+    axisymmetric = model.kinematics == "axisymmetric"
+    found = np.zeros(len(contacts.weights))
+    for interface, (pairing, own) in zip(model.interfaces, contacts, strict=True):
+        if interface.fluid_pressure is not None:
+            try:
+                found[own] = interface.fluid_pressure.at(pairing.points, axisymmetric)
+            except ValueError as error:
+                raise CaseError(f"{interface.table}.fluid_pressure: {error}") from None
+    return found
 
 
 def surface_loads(holder: Holder, elastic: Elasticity) -> list[list[Callable]]:

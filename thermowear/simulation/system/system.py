@@ -65,7 +65,7 @@ class System:
     speed : ndarray, shape (n,)
         Sliding speed at the contact points [m/s].
     dead_load : ndarray or None, shape (n_owned,)
-        Nodal forces of the surface loads [N].
+        Nodal forces of the surface loads and of fluids between the faces [N].
     thermal : ThermalSystem or None
     choice : SolverChoice
         Solver of the bodies.

@@ -4,6 +4,7 @@ Two rings with insulated sides, held at their far ends, where they have the ambi
 Their height is many times the length at which a ring forgets how it is held, about ``(r_m b)^0.5``,
 so that their faces turn like those of free rings. Wear makes the hot, loaded faces parallel: where
 they part by heat, less is worn. At a higher speed they then open outside, at a lower one inside.
+A fluid between the faces opens them against the spring, and deflects the rings.
 """
 
 from __future__ import annotations
@@ -28,12 +29,16 @@ EXPANSIONS = {"ring": 5e-6, "seat": 4e-6}
 """[W/(m K)] of both rings, which share the heat equally, and [1/K]."""
 AFTER = {"outside": 2.0, "inside": 0.5}
 """Side on which the faces open after a change to so many times the speed."""
+SEALED = 0.1e6
+"""Pressure of the fluid at the outer radius [Pa]."""
 _RUN_IN, _CHANGE = 2e5, 1.0
 """Duration of the running-in, and of the change of speed after it [s]."""
 
 
-def tables(speed: float | None = SPEED, elements: int = 8) -> dict[str, Any]:
-    """Tables of the steady state; without heat if the speed is None."""
+def tables(
+    speed: float | None = SPEED, elements: int = 8, fluid: str | None = None
+) -> dict[str, Any]:
+    """Tables of the steady state; without heat if the speed is None; with a fluid pressure."""
     ring = {"x": [f"{INNER} m", f"{OUTER} m"], "height": f"{HEIGHT} m"}
     result: dict[str, Any] = {
         "model": "axisymmetric",
@@ -48,7 +53,7 @@ def tables(speed: float | None = SPEED, elements: int = 8) -> dict[str, Any]:
             }
             for name, expansion in EXPANSIONS.items()
         },
-        "contact": {"friction": FRICTION},
+        "contact": {"friction": FRICTION} | ({} if fluid is None else {"fluid_pressure": fluid}),
         "holders": {
             "spring": {"surface": "ring_top", "force": f"{FORCE} N"},
             "housing": {"surface": "seat_bottom", "free": []},
@@ -78,8 +83,9 @@ def running_in(factor: float, elements: int = 8) -> Result:
 
 
 def face_seal() -> Iterator[Check]:
-    """Coning by heat, parallel faces at the end of the running-in, and openings after it."""
+    """Coning by heat, fluid, parallel faces at the end of the running-in, openings after it."""
     yield from coning()
+    yield from fluid()
     for side in AFTER:
         yield from opening(side)
 
@@ -110,6 +116,34 @@ def coning(elements: int = 8) -> Iterator[Check]:
     turned = reference.rotation(INNER, OUTER, upper, up)
     turned -= reference.rotation(INNER, OUTER, lower, down)
     yield compare("relative rotation of the faces by heat [rad]", slope, turned, 1e-2, RING_FORMULA)
+
+
+def fluid(elements: int = 4) -> Iterator[Check]:
+    """Steady states with a fluid between the faces: forces, pressure, and shape.
+
+    A fluid with the distribution of the contact pressure, 1/r, deflects the rings as the part of
+    the contact pressure that it replaces: the worn shape is that without it.
+    """
+    width, area = OUTER - INNER, np.pi * (OUTER**2 - INNER**2)
+    linear = 2 * np.pi * SEALED * ((OUTER**3 - INNER**3) / 3 - INNER * area / (2 * np.pi)) / width
+    given = {
+        "uniform": (f"{SEALED} Pa", SEALED * area),
+        "falling to 0 inside": (f"{SEALED} Pa * (r - {INNER} m) / ({width} m)", linear),
+        "1/r": (f"{SEALED} Pa * {OUTER} m / r", 2 * np.pi * SEALED * OUTER * width),
+    }
+    dry = computed(load(tables(None, elements)))
+    for name, (pressure, opening_force) in given.items():
+        wet = computed(load(tables(None, elements, pressure)))
+        numbers, note = wet.summary["contacts"]["ring-seat"], f"fluid pressure {name}"
+        quantity = f"force of the fluid, {note} [N]"
+        yield compare(quantity, numbers["fluid_force_N"], opening_force, 1e-9, "closed form")
+        rest = (FORCE - opening_force) / (2 * np.pi * width) / wet.interface.x
+        quantity = f"contact pressure at the point of largest deviation, {note} [Pa]"
+        source = "uniform wear, closing less opening force"
+        yield compare_worst(quantity, wet.interface.pressure, rest, 1e-9, source)
+    quantity = "worn shape with a fluid pressure 1/r at the point of largest deviation [m]"
+    shape, same = wet.interface.shape, dry.interface.shape
+    yield compare_worst(quantity, shape, same, 1e-9, "without fluid", float(np.ptp(same)))
 
 
 def opening(side: str, elements: int = 8) -> Iterator[Check]:

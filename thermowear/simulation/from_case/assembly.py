@@ -152,7 +152,7 @@ def _wear(case: AssemblyCase, face: str, table: AssemblyContactTable) -> Wear:
 
 
 def _track(case: AssemblyCase, body: str, face: str) -> Distribution | Track:
-    """Where a face of a body wears."""
+    """Distribution of the wear of a face of a body."""
     geometry = case.geometry
     if case.wear[body].spread == "in-place":
         return IN_PLACE

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .interfaces import Law, LocalState
+from .layered_wear import LayeredWear, layers_of
 from .power_wear import PowerWear
 
 
@@ -74,6 +75,8 @@ def law_by_point(laws: Sequence[Law], at: np.ndarray) -> Law:
 def joined_laws(laws: Sequence[Law | None], counts: Sequence[int]) -> Law:
     """Law of the points of several interfaces; a power law if all of them are.
 
+    If any has layers, so has the law: those of the others have no thickness.
+
     Parameters
     ----------
     laws : sequence of Law or None
@@ -84,6 +87,8 @@ def joined_laws(laws: Sequence[Law | None], counts: Sequence[int]) -> Law:
     known = [PowerWear(0.0) if law is None else law for law in laws]
     if len(known) == 1:
         return known[0]
+    if any(isinstance(law, LayeredWear) for law in known):
+        return _joined_layers([layers_of(law) for law in known], counts)
     powers = [law for law in known if type(law) is PowerWear]
     if len(powers) < len(known):
         return LawByPoint(tuple(known), np.repeat(np.arange(len(known)), counts))
@@ -94,3 +99,16 @@ def joined_laws(laws: Sequence[Law | None], counts: Sequence[int]) -> Law:
         for name in ("coefficient", "pressure_exponent", "velocity_exponent")
     )
     return PowerWear(*columns)
+
+
+def _joined_layers(each: Sequence[LayeredWear], counts: Sequence[int]) -> LayeredWear:
+    """Layers of the points of several interfaces, counted from the substrate up."""
+    most = max(len(face.thickness) for face in each)
+    missing = [most - len(face.thickness) for face in each]
+    pairs = list(zip(each, missing, strict=True))
+    thickness = [(0.0,) * n + face.thickness for face, n in pairs]
+    laws = [(face.laws[0],) * n + face.laws for face, n in pairs]
+    return LayeredWear(
+        tuple(np.repeat(layer, counts) for layer in zip(*thickness, strict=True)),
+        tuple(joined_laws(layer, counts) for layer in zip(*laws, strict=True)),
+    )

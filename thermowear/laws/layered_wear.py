@@ -25,14 +25,15 @@ class LayeredWear:
 
     Attributes
     ----------
-    thickness : tuple of float
-        Thickness of each layer, from the surface down [m].
+    thickness : tuple of (float or ndarray, shape (n,))
+        Thickness of each layer, from the surface down, of the face or at each of its points; a
+        layer of no thickness is left out there [m].
     laws : tuple of Law
         Law of each layer and, last, of the substrate. A law that depends on the depth gets the
         depth below the unworn surface.
     """
 
-    thickness: tuple[float, ...]
+    thickness: tuple[float | np.ndarray, ...]
     laws: tuple[Law, ...]
 
     @property
@@ -52,22 +53,27 @@ class LayeredWear:
 
     @cached_property
     def borders(self) -> np.ndarray:
-        """Depth of the lower border of each layer, infinite for the substrate [m]."""
-        return np.append(np.cumsum(self.thickness), np.inf)
+        """Depth of the lower border of each layer, infinite for the substrate [m].
+
+        Shape (n_layers + 1, 1) or, by point, (n_layers + 1, n).
+        """
+        each = [np.atleast_1d(thickness) for thickness in self.thickness]
+        last = np.full_like(each[0], np.inf) if each else np.array([np.inf])
+        return np.cumsum([*each, last], axis=0)
 
     @property
-    def total(self) -> float:
-        """Thickness of all layers together [m]."""
-        return float(np.sum(self.thickness))
+    def total(self) -> np.ndarray:
+        """Thickness of all layers together, shape (1,) or (n,) [m]."""
+        return self.borders[-2] if self.thickness else np.zeros(1)
 
     def reached(self, depth: np.ndarray) -> np.ndarray:
         """Index of the layer that a depth has reached; a border belongs to the layer below it."""
-        return np.searchsorted(self.borders, depth, side="right")
+        return (np.asarray(depth) >= self.borders).sum(axis=0)
 
     def worn(self, depth: np.ndarray) -> np.ndarray:
         """Depth worn of each layer and of the substrate, shape (n_layers + 1, n) [m]."""
-        upper = np.append(0.0, self.borders[:-1])[:, None]
-        return np.clip(depth, upper, self.borders[:, None]) - upper
+        upper = np.vstack([np.zeros_like(self.borders[:1]), self.borders[:-1]])
+        return np.clip(depth, upper, self.borders) - upper
 
     def value(self, at: LocalState) -> np.ndarray:
         """Depth worn per time at the points [m/s]."""
@@ -96,7 +102,7 @@ class LayeredWear:
         """
         spent, gained = np.zeros_like(rates), np.zeros_like(rates)
         left, last = np.full(len(depth), time), np.zeros(len(depth))
-        upper = np.append(-np.inf, self.borders[:-1])
+        upper = np.vstack([np.full_like(self.borders[:1], -np.inf), self.borders[:-1]])
         for layer, (begin, end) in enumerate(zip(upper, self.borders, strict=True)):
             rate, thick = rates[layer], np.maximum(end - np.maximum(depth, begin), 0.0)
             with np.errstate(divide="ignore", invalid="ignore"):

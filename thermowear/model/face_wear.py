@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import CaseError
 from ..laws.coefficients import Multipliers
 from ..laws.distribution import Distribution, InPlace
+from ..laws.expressions import Region
 from ..laws.interfaces import Law, LocalState
 from ..laws.law_by_point import law_by_point
 from ..laws.layered_wear import layers_of
@@ -119,12 +120,20 @@ class CompositeWear:
     ----------
     parts : mapping of str to FaceWear
         Wear by part of the body; in place, without layers.
+    regions : mapping of str to (Region, FaceWear)
+        Regions of the face whose wear takes the place of that of the part, by name.
     """
 
     parts: Mapping[str, FaceWear]
+    regions: Mapping[str, tuple[Region, FaceWear]] = field(default_factory=dict)
+
+    @property
+    def _named(self) -> dict[str, FaceWear]:
+        """Wear by part and by region."""
+        return {**self.parts, **{name: wear for name, (_, wear) in self.regions.items()}}
 
     def __post_init__(self) -> None:
-        coated = [part for part, wear in self.parts.items() if wear.has_layers]
+        coated = [part for part, wear in self._named.items() if wear.has_layers]
         if coated:
             raise CaseError(f"wear of {coated[0]}: a face of several materials may have no layers")
 
@@ -132,7 +141,7 @@ class CompositeWear:
     def each(self) -> tuple[FaceWear, ...]:
         """The different laws of the face."""
         different: list[FaceWear] = []
-        for wear in self.parts.values():
+        for wear in (*self.parts.values(), *(wear for _, wear in self.regions.values())):
             if wear not in different:
                 different.append(wear)
         return tuple(different)
@@ -178,6 +187,7 @@ class CompositeWear:
     def stress_by_part(self, body: str) -> dict[str, str]:
         """Stress that a coefficient multiplies, by part, for the summary."""
         found = {part: wear.per for part, wear in self.parts.items()}
+        found |= {f"{body}.{name}": wear.per for name, (_, wear) in self.regions.items()}
         return {part: per for part, per in found.items() if per is not None}
 
 

@@ -9,7 +9,9 @@ from typing import Any, Literal
 import numpy as np
 
 from ..case.values import units
+from ..case.values.regions import region
 from ..errors import CaseError
+from ..laws.expressions import Region
 from ..laws.time_course import TimeFunction
 from ..model.conditions import Motion
 from ..model.face_wear import CompositeWear, FaceWear, Wear
@@ -30,9 +32,10 @@ class FacePair:
         Coefficient of friction: a number, an expression, a law, or a function of some of p, v, T.
     conductance : float, str, InterfaceLaw, callable, HardnessConductance or None
         Contact conductance likewise; None: perfect contact [W/(m² K)].
-    wear : mapping of MeshBody to (str, Law, callable, FaceWear, or mapping of int to these)
+    wear : mapping of MeshBody to (str, Law, callable, FaceWear, or mapping to these)
         Wear rates of the bodies, also as functions of some of p, v, T, depth, mu [m/s]; of a body
-        of several materials also by cell tag: a law for each one on its contact face.
+        of several materials also by cell tag: a law for each one on its contact face; or by region,
+        ``{"x < 30 mm": …, "x > 30 mm": …}``.
     partition : float or str
         Fraction of the friction heat released into the body of `one`; ``"effusivity"``: by the
         thermal effusivities of both.
@@ -134,16 +137,27 @@ def _body_wear(given: Any, body: MeshBody) -> Wear:
         return given
     if not isinstance(given, Mapping):
         return _face_wear(given, where)
-    parts = {}
+    parts, regions = {}, {}
     for tag, law in given.items():
-        if tag not in body.part_of_tag:
+        which = f"{where}, {'region' if isinstance(tag, str) else 'tag'} {tag}"
+        if not isinstance(tag, str) and tag not in body.part_of_tag:
             known = ", ".join(map(str, body.part_of_tag)) or "none, the body has one material"
             raise CaseError(f"{where}: unknown cell tag {tag!r}; known: {known}")
-        wear = _face_wear(law, f"{where}, tag {tag}")
+        wear = _face_wear(law, which)
         if not wear.in_place or wear.has_layers:
-            raise CaseError(f"{where}, tag {tag}: must wear in place, without layers")
-        parts[body.part_of_tag[tag]] = wear
-    return CompositeWear(parts)
+            raise CaseError(f"{which}: must wear in place, without layers")
+        if isinstance(tag, str):
+            regions[tag] = _region(tag, where), wear
+        else:
+            parts[body.part_of_tag[tag]] = wear
+    return CompositeWear(parts, regions)
+
+
+def _region(text: str, where: str) -> Region:
+    try:
+        return region(text)
+    except ValueError as error:
+        raise CaseError(f"{where}: {error}") from None
 
 
 def _face_wear(given: Any, where: str) -> FaceWear:

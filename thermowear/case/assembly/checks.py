@@ -169,8 +169,6 @@ def _wear(case: AssemblyCase) -> Iterator[Fault]:
         if table.spread == "track" and not _passes(case, name):
             text = "is for rings that pass a sector (geometry.rings) and for a turning drum"
             yield f"wear.{name}.spread", text
-        if table.layers is not None:
-            yield f"wear.{name}.layers", "not supported in a model of several bodies"
     for path, law in case.wear.laws.items():
         name = path.partition(".materials.")[0]
         for joint, contact in case.contacts.items():

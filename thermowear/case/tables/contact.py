@@ -58,6 +58,11 @@ class InterfaceTable(Section):
         given = self.friction
         return given if isinstance(given, float) else typical_value(self.friction_law)
 
+    @property
+    def friction_variables(self) -> frozenset[str]:
+        """Variables of the coefficient of friction and its factors: of p, v and T."""
+        return self.friction_law.variables | self.friction_factor.multipliers.variables
+
 
 class ContactTable(InterfaceTable):
     """Table ``contact`` of a pair.

@@ -64,7 +64,9 @@ def cell_sets(bodies: Mapping[str, BodyTable], wear: Any) -> dict[str, dict[str,
     sets: dict[str, dict[str, str]] = {}
     for kind, tables in (("bodies", bodies), ("wear", wear)):
         for name, table in tables.items():
-            for part in table.materials:
+            for part, own in table.materials.items():
+                if getattr(own, "where", None) is not None:
+                    continue
                 sets.setdefault(name, {}).setdefault(part, f"{kind}.{name}.materials.{part}")
     return sets
 

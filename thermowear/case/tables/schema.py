@@ -159,8 +159,7 @@ class Case(Section):
     @property
     def friction_variables(self) -> frozenset[str]:
         """Variables of the coefficient of friction and its factors: of p, v and T."""
-        contact = self.contact
-        return contact.friction_law.variables | contact.friction_factor.multipliers.variables
+        return self.contact.friction_variables
 
     @property
     def varies(self) -> bool:

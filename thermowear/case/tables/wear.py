@@ -8,13 +8,22 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
+from ..values.regions import RegionOfSpace
 from ..values.section import KeyFault, Section, number_or
 from .layers import LayersTable
 from .wear_rate import RateTable
 
 
 class PartWearTable(RateTable):
-    """Wear law of a part of a contact face."""
+    """Wear law of a part of a contact face.
+
+    Attributes
+    ----------
+    where : Region or None
+        Region of a part by the place; without it the name is that of a cell set or zone.
+    """
+
+    where: RegionOfSpace | None = None
 
 
 class BodyWearTable(RateTable):
@@ -29,7 +38,8 @@ class BodyWearTable(RateTable):
     layers : LayersTable or None
         Layers on the face; the body's own law is that of the substrate below them.
     materials : dict of str to PartWearTable
-        Wear laws by cell set of a mesh file, or by zone of a geometry. All other cells of the face
+        Wear laws by cell set of a mesh file, by zone of a geometry, or by a name of their own for a
+        region (`where`). All other cells of the face
         wear by the body's own law, which may be omitted if there are none.
     """
 

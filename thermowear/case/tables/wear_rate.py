@@ -109,7 +109,7 @@ class RateTable(Section):
         written, left_out = handler(self).items(), {"rate"} if self.rate is None else {*OF_POWER}
         if self.coefficient is None and self.rate is None:
             left_out = {*RateTable.model_fields}
-        empty = {"materials", "layers"}
+        empty = {"materials", "layers", "where"}
         return {k: v for k, v in written if k not in left_out and (k not in empty or v)}
 
     @property

@@ -13,6 +13,7 @@ from ..assembly.schema import AssemblyCase
 from ..assembly.tables import SUPPORTS
 from ..values.section import Fault
 from . import materials
+from .layer_wear import layer_wear
 from .part_wear import part_wear
 
 
@@ -79,4 +80,12 @@ def _carried(case: AssemblyCase) -> Iterator[Fault]:
                     yield f"{path}.{key}", 'missing; needed because heat.advection is "resolved"'
 
 
-_CHECKS = (_supports, _sliding, materials.cell_sets, materials.locking, part_wear, _carried)
+_CHECKS = (
+    _supports,
+    _sliding,
+    materials.cell_sets,
+    materials.locking,
+    layer_wear,
+    part_wear,
+    _carried,
+)

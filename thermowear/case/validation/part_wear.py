@@ -20,10 +20,12 @@ def part_wear(case: Case | AssemblyCase) -> Iterator[Fault]:
         if not wear.materials or body not in geometry.bodies:
             continue
         known = [geometry.set_of.get(part, part) for part in geometry.parts_of(body)[1:]]
-        if not known:
-            yield path, f"{geometry.type!r} has no parts of {body}; leave it out"
+        by_name = [name for name, law in wear.materials.items() if law.where is None]
+        if by_name and not known:
+            text = f"{geometry.type!r} has no parts of {body}; leave it out, or add where = ..."
+            yield path, text
             continue
-        for name in wear.materials:
+        for name in by_name:
             if part_named(geometry, body, name) is None:
                 yield f"{path}.{name}", f"unknown part; must be one of: {', '.join(known)}"
         if type_ in _CYCLIC:

@@ -17,7 +17,7 @@ from ..heat.friction_heat import FrictionHeat
 from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
-from ..results.coatings import WearingState, layers, times_since_worn_through
+from ..results.coatings import Face, WearingState, layers, times_since_worn_through
 from ..results.contact_rows import contact_rows
 from ..results.recording import Snapshot, snapshot_at
 from ..runtime.history import AnalysisHistory
@@ -74,8 +74,8 @@ class TransientHistory(AnalysisHistory[Moment]):
         sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
         self.loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
         self._speed, self._is_pair = 0.0, system.model.is_pair
-        self._coated = layers(system).keys()
-        self._lost: dict[int, tuple[float, float]] = {}
+        self._coated = layers(system.model).keys()
+        self._lost: dict[Face, tuple[float, float]] = {}
         self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
 
     def restart_data(self) -> tuple:
@@ -86,7 +86,8 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def restore(self, data: tuple) -> None:
         self._speed, loop, own, *lost = data  # checkpoints of earlier versions have no layers
-        self._lost = dict(lost[0]) if lost else {}
+        known = lost[0] if lost else {}  # or those of the only interface, by side
+        self._lost = {k if isinstance(k, tuple) else (0, k): each for k, each in known.items()}
         self.loop.restore(loop)
         if self.loop.now.problem.heat is not None and own is not None:
             self.loop.now.problem.heat.steps.restore(own)
@@ -154,14 +155,19 @@ class TransientHistory(AnalysisHistory[Moment]):
             "peak_temperature_time_s": peak.time,
         }
 
-    def _lost_layers(self) -> dict[str, float | None]:
+    def _lost_layers(self) -> dict:
         """Time and distance at which each coated face first lost all layers; None if not yet."""
-        found = {}
-        for index in self._coated:
-            time, distance = self._lost.get(index, (None, None))
-            found[f"worn_through_time_{index + 1}_s"] = time
-            found[f"worn_through_distance_{index + 1}_m"] = distance
-        return found
+        model = self._system.model
+        found: dict[str, dict] = {}
+        for index, side in self._coated:
+            time, distance = self._lost.get((index, side), (None, None))
+            found.setdefault(model.interfaces[index].name, {}).update(
+                {
+                    f"worn_through_time_{side + 1}_s": time,
+                    f"worn_through_distance_{side + 1}_m": distance,
+                }
+            )
+        return found.get("", {}) if model.is_pair else {"contacts": found}
 
     def _runs_away(self) -> bool:
         """True if the faces heat up much faster than before (thermal runaway)."""

@@ -256,9 +256,13 @@ def body_wear(
         return _layered(wear, contact, track)
     parts = geometry.parts_of(name)
     found = dict.fromkeys(parts, face_wear(wear, contact)) if wear.has_law else {}
-    own = {part_named(geometry, name, key): law for key, law in wear.materials.items()}
-    found |= {part: face_wear(law, contact) for part, law in own.items() if part is not None}
-    return CompositeWear(found)
+    regions = {}
+    for key, law in wear.materials.items():
+        if law.where is not None:
+            regions[key] = law.where, face_wear(law, contact)
+        elif (part := part_named(geometry, name, key)) is not None:
+            found[part] = face_wear(law, contact)
+    return CompositeWear(found, regions)
 
 
 def _layered(wear: BodyWearTable, contact: InterfaceTable, track: Distribution | Track) -> FaceWear:

@@ -123,11 +123,11 @@ class InterfaceProblem(WearProblem):
         if not reached.any() or state.contact.warm_start is None:
             return state
         if state.pointwise is None:
-            depth = state.worn.sum(axis=0)[state.pressure > 0.0]
             # pointwise contact once the edge of the contact is that of the wear: once the wear
             # depth is steeper than the deflection, in the mean over the contact
-            uniform = (reached.all() and not self._wear.layered) or not depth.size
-            if uniform or np.ptp(depth) <= self._method.deflection_range(state.contact):
+            steepness = self._wear.range_of_depth(state.worn, state.pressure > 0.0)
+            uniform = reached.all() and not self._wear.layered
+            if uniform or steepness <= self._method.deflection_range(state.contact):
                 return state
         edge = self._edge.points(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)

@@ -29,6 +29,7 @@ class InterfaceWear:
     def __init__(self, system: System):
         self.laws, self.spreads = list(system.laws.values()), list(system.spreads.values())
         self._layers = [layers_of(law) for law in self.laws]
+        self._ranges = system.contacts.ranges
         self.layered = any(layers.thickness for layers in self._layers)
 
     def final_rates(self, conditions: InterfaceConditions) -> WearRates:
@@ -37,18 +38,28 @@ class InterfaceWear:
         return WearRates(substrates, self.spreads, conditions.wear, conditions.states)
 
     def below_layers(self, worn: np.ndarray) -> list[np.ndarray]:
-        """Points below the lower border of each layer, shape (n,) each.
+        """Points of an interface below the lower border of each layer, shape (n,) each.
 
-        A border that all points pass nearly at once is left out.
+        A border that all its points pass nearly at once is left out.
         """
-        return [
-            depth >= border
-            for layers, depth in zip(self._layers, worn, strict=True)
-            for border in layers.borders[:-1]
-            if depth.min() < (1 - _LEVEL) * border
-        ]
+        found = []
+        for layers, depth in zip(self._layers, worn, strict=True):
+            borders = np.broadcast_to(layers.borders, (len(layers.borders), len(depth)))
+            for border in borders[:-1]:
+                for own in self._ranges:
+                    if depth[own].min() < (1 - _LEVEL) * border[own][0]:
+                        below = np.zeros(len(depth), dtype=bool)
+                        below[own] = depth[own] >= border[own]
+                        found.append(below)
+        return found
+
+    def range_of_depth(self, worn: np.ndarray, points: np.ndarray) -> float:
+        """Range of the depth of both faces over the selected points of an interface [m]."""
+        depth = worn.sum(axis=0)
+        each = [depth[own][points[own]] for own in self._ranges]
+        return max((float(np.ptp(own)) for own in each if own.size), default=0.0)
 
     def are_left(self, worn: np.ndarray, points: np.ndarray) -> bool:
         """True if the faces have any of their layers left at points selected by a mask (n,)."""
         pairs = zip(self._layers, worn, strict=True)
-        return any(bool(np.any(depth[points] < layers.total)) for layers, depth in pairs)
+        return any(bool(np.any((depth < layers.total)[points])) for layers, depth in pairs)

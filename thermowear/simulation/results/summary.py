@@ -120,7 +120,7 @@ def _of_interface(end: Snapshot, index: int) -> dict:
         "wear_dissipation_W": float(w @ (p * rates)),
         "wear_volume_1_m3": float(volumes[0]),
         "wear_volume_2_m3": float(volumes[1]),
-        **layer_volumes(system, depths, volumes),
+        **layer_volumes(system, index, depths, volumes),
         "wear_coefficient_per": {
             name: per
             for side, wear in interface.wear.items()

@@ -40,6 +40,7 @@ from .contact_points import (
     softness_of_parts,
     worn_contact_points,
 )
+from .face_regions import divided_faces, require_regions
 from .rigid_modes import dead_load, dead_resultant, load_direction, rigid_modes
 from .setup_cache import SetupCache, inputs
 from .system import System
@@ -168,25 +169,34 @@ def _paired(
     model: Model, comm, kinematics: Kinematics, bodies: Bodies, worn: WornGeometry | None
 ) -> tuple[Contacts, Basis]:
     """Contact points of all interfaces, and their pressure spaces."""
-    each = [_paired_faces(model, one, comm, kinematics, bodies, worn) for one in model.interfaces]
+    gathered = [_gathered(model, one, bodies) for one in model.interfaces]
+    require_regions(model, gathered)
+    pairs = zip(model.interfaces, gathered, strict=True)
+    each = [_paired_faces(model, *pair, comm, kinematics, bodies, worn) for pair in pairs]
     pairings, bases = zip(*each, strict=True)
     contacts = Contacts(pairings, tuple(interface.bodies for interface in model.interfaces))
     return contacts, joined_bases(bases)
 
 
+def _gathered(model: Model, interface: Interface, bodies: Bodies) -> tuple:
+    """Both faces of an interface, with the softness and groups of their materials."""
+    of_parts = PartValues(softness_of_parts(model, interface), groups_of_parts(model, interface))
+    return gather_faces(bodies, interface.faces, of_parts)
+
+
 def _paired_faces(
     model: Model,
     interface: Interface,
+    gathered: tuple,
     comm,
     kinematics: Kinematics,
     bodies: Bodies,
     worn: WornGeometry | None,
 ) -> tuple[Pairing, Basis]:
-    of_parts = PartValues(softness_of_parts(model, interface), groups_of_parts(model, interface))
-    gathered = gather_faces(bodies, interface.faces, of_parts)
-    require_laws(model, interface, bodies, gathered)
+    divided = divided_faces(model, interface, gathered)
+    require_laws(model, interface, bodies, divided)
     wears = bool(interface.wearing_in_place)
-    faces = [replace(face, wears=wears) for face in gathered]
+    faces = [replace(face, wears=wears) for face in divided]
     if worn is None:
         return contact_points(model, interface, comm, kinematics, *faces)
     return worn_contact_points(model, interface, kinematics, worn, *faces)

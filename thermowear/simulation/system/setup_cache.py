@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from ...model.model import Model, Zone
 from .contact_points import groups_of_parts, softness_of_parts
+from .face_regions import regions_of
 
 Part = TypeVar("Part")
 
@@ -81,6 +82,7 @@ def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
             softness_of_parts(model, one),
             bool(one.wearing_in_place),
             groups_of_parts(model, one),
+            regions_of(one),
         )
         for one in interfaces
     ]

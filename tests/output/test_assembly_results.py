@@ -60,7 +60,8 @@ def test_files_by_contact(finished):
     if case.analysis.type == "transient":
         ends += [f"_at_{time:g}" for time in case.analysis.output_times]
         expected |= {"checkpoint.npz", "history.csv"}
-        expected |= {"heat.csv"} if case.heat.transient else set()
+        heated = case.heat is not None and case.heat.transient
+        expected |= {"heat.csv"} if heated else set()
     expected |= {f"interface_{name}{end}.csv" for name in contacts(case) for end in ends}
     expected |= {f"profile_{name}.csv" for name in contacts(case)}
     assert {path.name for path in folder.iterdir()} == expected

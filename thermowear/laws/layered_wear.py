@@ -68,7 +68,9 @@ class LayeredWear:
 
     def reached(self, depth: np.ndarray) -> np.ndarray:
         """Index of the layer that a depth has reached; a border belongs to the layer below it."""
-        return (np.asarray(depth) >= self.borders).sum(axis=0)
+        count, points = self.borders.shape
+        borders = self.borders.reshape(count, *[1] * (np.ndim(depth) - 1), points)
+        return (np.asarray(depth) >= borders).sum(axis=0)
 
     def worn(self, depth: np.ndarray) -> np.ndarray:
         """Depth worn of each layer and of the substrate, shape (n_layers + 1, n) [m]."""

@@ -28,12 +28,12 @@ _KEYS = {"body_names": "bodies", "surface_names": "surfaces"}
 
 def _names(value: Any) -> Any:
     """Names in the file by names in the case, from a list of names that are the same in both."""
-    names = dict.fromkeys(value) if isinstance(value, list | tuple) else value
-    if not isinstance(names, Mapping) or not all(isinstance(name, str) for name in names):
+    named = isinstance(value, list | tuple | Mapping)
+    if not named or not all(isinstance(name, str) for name in value):
         raise ValueError(f"found {value!r}; must be a list of names, or a table of names")
-    if len(names) < len(value):
+    if len(set(value)) < len(value):
         raise ValueError(f"found {value!r}; names a surface twice")
-    return names if isinstance(value, Mapping) else {name: name for name in names}
+    return value if isinstance(value, Mapping) else {name: name for name in value}
 
 
 SurfaceNames = Annotated[dict[str, str], BeforeValidator(_names)]

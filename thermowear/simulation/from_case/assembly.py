@@ -21,7 +21,8 @@ from ...model.model import Discretisation, Model, Zone
 from ...model.relative_motion import relative_motion
 from ...model.tie import Tie, glued_bodies, with_glued
 from ...model.tracks import EvenTrack, Track
-from .model import attributes, body_wear, conductance, material
+from .model import attributes, conductance, material
+from .wear import body_wear
 
 
 def assembly_of(case: AssemblyCase) -> Model:

@@ -125,7 +125,7 @@ class InterfaceProblem(WearProblem):
         if state.pointwise is None:
             # pointwise contact once the edge of the contact is that of the wear: once the wear
             # depth is steeper than the deflection, in the mean over the contact
-            steepness = self._wear.range_of_depth(state.worn, state.pressure > 0.0)
+            steepness = state.range_of_depth(self.system.contacts.ranges)
             uniform = reached.all() and not self._wear.layered
             if uniform or steepness <= self._method.deflection_range(state.contact):
                 return state

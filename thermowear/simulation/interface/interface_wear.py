@@ -53,12 +53,6 @@ class InterfaceWear:
                         found.append(below)
         return found
 
-    def range_of_depth(self, worn: np.ndarray, points: np.ndarray) -> float:
-        """Range of the depth of both faces over the selected points of an interface [m]."""
-        depth = worn.sum(axis=0)
-        each = [depth[own][points[own]] for own in self._ranges]
-        return max((float(np.ptp(own)) for own in each if own.size), default=0.0)
-
     def are_left(self, worn: np.ndarray, points: np.ndarray) -> bool:
         """True if the faces have any of their layers left at points selected by a mask (n,)."""
         pairs = zip(self._layers, worn, strict=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -54,6 +54,12 @@ class InterfaceState:
     def largest(self) -> float:
         """Largest pressure so far [Pa]."""
         return max(self.peak, float(self.pressure.max()))
+
+    def range_of_depth(self, interfaces: Sequence[slice]) -> float:
+        """Largest range of the depth of both faces [m] over the pressing points of an interface."""
+        depth, pressing = self.worn.sum(axis=0), self.pressure > 0.0
+        each = (depth[own][pressing[own]] for own in interfaces if pressing[own].any())
+        return max((float(np.ptp(own)) for own in each), default=0.0)
 
     def by_body(self, wearing: Iterable[int]) -> np.ndarray:
         """Wear depths of both bodies, given the indices of the wearing ones, shape (2, n) [m]."""

@@ -73,9 +73,8 @@ class InterfaceState:
         if stored is not None and other.stored is not None:
             stored = stored.towards(other.stored, part)
         worn = self.worn + part * (other.worn - self.worn)
-        return InterfaceState(
-            worn, other.contact, self.largest, other.faces, stored, self.pointwise
-        )
+        of_other = other.contact, self.largest, other.faces
+        return InterfaceState(worn, *of_other, stored, self.pointwise)
 
 
 class WearProblem(ABC):

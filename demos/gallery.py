@@ -31,6 +31,7 @@ HERE = Path(__file__).resolve().parent
 CHOICES = (
     ("bodies",),
     ("mode", "heat", "track", "cycles", "wear", "friction", "profile", "interface"),
+    ("coating",),
 )
 SIDES = (
     1100,
@@ -173,7 +174,8 @@ def command_of(study: Study) -> list[str]:
 
 def figures(summary: dict) -> str:
     """Key figures of a summary that exist and are not zero, in one line."""
-    worn = bool(summary["wear_coefficient_per"])
+    each = summary.get("contacts", {"": summary}).values()
+    worn = any(contact["wear_coefficient_per"] for contact in each)
     found = {key: summary.get(key) for key in KEYS if worn or key != "shape_range_m"}
     if abs(found.get("shape_range_m") or 0.0) < FLAT:
         found["shape_range_m"] = None
@@ -207,11 +209,20 @@ def _entry(case: Path, folder: Path, pictures: Path) -> str:
     lines = [f"## {tomllib.loads(text)['title']}", "", *textwrap.wrap(leading_text(text), 100), ""]
     lines += [f"    python3 -m thermowear run demos/{case.name}", "", figures(summary), ""]
     for names in CHOICES:
-        drawn = [name for name in names if (folder / f"{name}.png").is_file()]
-        for name in drawn[:1]:
+        for name in _drawn(folder, names, list(summary.get("contacts", {}))):
             (pictures / f"{case.stem}-{name}.png").write_bytes(small_png(folder / f"{name}.png"))
             lines += [f"![{case.stem}: {name}](pictures/{case.stem}-{name}.png)", ""]
     return "\n".join(lines)
+
+
+def _drawn(folder: Path, names: Sequence[str], contacts: Sequence[str]) -> list[str]:
+    """First of some pictures that exists, of several bodies those of their first two contacts."""
+    for name in names:
+        stems = [name, *(f"{name}_{contact}" for contact in contacts)]
+        found = [stem for stem in stems if (folder / f"{stem}.png").is_file()]
+        if found:
+            return found[:2]
+    return []
 
 
 def _film(film: Film, results: Path, pictures: Path) -> str:

@@ -14,8 +14,8 @@ from typing import Any
 __version__ = "0.1.0"
 
 _SCRIPTING = (
-    *("Body", "Heat", "Holder", "Interface", "LoadHistory", "Material", "Model", "PowerWear"),
-    *("PressureConductance", "Rotation", "TimeHistory", "Translation"),
+    *("Body", "Heat", "Holder", "Interface", "LayeredWear", "LoadHistory", "Material", "Model"),
+    *("PowerWear", "PressureConductance", "Rotation", "Tie", "TimeHistory", "Translation"),
 )
 _LAZY = {
     **{"run": "simulation", "Result": "results", "Case": "case", "sweep": "app.sweeping"},

@@ -26,6 +26,15 @@ def test_a_matrix_is_solved_with_many_right_hand_sides():
     assert factor.solve(sp.csr_matrix(loads)) == pytest.approx(expected, rel=1e-14)
 
 
+def test_sparse_right_hand_sides_without_entries(monkeypatch):
+    """requirement: loads of one body are none of the others: zero, without a call of MUMPS."""
+    factor = DirectSolver(petsc(np.diag([4.0, 3.0, 2.0])))
+    monkeypatch.setattr(factor, "_factored", None)
+    found = factor.solve(sp.csr_matrix((3, 2)))
+    assert found.shape == (3, 2)
+    assert not found.any()
+
+
 @pytest.mark.parametrize("symmetry", ["definite", "symmetric", "none"])
 def test_a_singular_matrix_is_an_error_in_words(symmetry):
     """requirement: no factor, no solution: exit code 2 and the reason."""

@@ -37,7 +37,7 @@ def test_uniaxial_stress_and_free_expansion(cell_type, solver, within):
     u_z = -p (z - z0) / E and u_x = ν p x / E; heated evenly it expands freely, without reactions.
     """
     problem = held_in_planes(cell_type, solver)
-    assert isinstance(problem.each[0].factor, MultigridSolver) is (solver == "multigrid")
+    assert isinstance(problem.groups[0].factor, MultigridSolver) is (solver == "multigrid")
     nodes = problem.nodes()
     level = np.where(problem.owned_by("upper"), *HEIGHTS.values())
     from_planes = nodes - np.column_stack([0 * level, 0 * level, level])

@@ -63,13 +63,13 @@ def test_displacements_of_the_direct_solver(cell_type, order, degree):
     supports = {"symmetric": ("upper_low_x",), "rollers": ("lower_low_y",)}
     direct = elastic(bodies, degree, None, **supports)
     multigrid = elastic(bodies, degree, MULTIGRID, **supports)
-    assert all(isinstance(body.factor, MultigridSolver) for body in multigrid.each)
+    assert all(isinstance(group.factor, MultigridSolver) for group in multigrid.groups)
     expected = direct.solve(pulled(direct))
     found = multigrid.solve(np.column_stack([pulled(multigrid), -2 * pulled(multigrid)]))
     tolerance = 1e-7 * np.abs(expected).max()
     np.testing.assert_allclose(found[:, 0], expected, rtol=0.0, atol=tolerance)
     np.testing.assert_allclose(found[:, 1], -2 * expected, rtol=0.0, atol=2 * tolerance)
-    assert max(k for body in multigrid.each for k in body.factor.iterations) <= 30
+    assert max(k for group in multigrid.groups for k in group.factor.iterations) <= 30
 
 
 def test_iterations_do_not_grow_with_the_number_of_unknowns():
@@ -78,7 +78,7 @@ def test_iterations_do_not_grow_with_the_number_of_unknowns():
     for n in (3, 6):
         problem = elastic(solids(n), 2, MULTIGRID)
         problem.solve(pulled(problem))
-        counts += [k for body in problem.each for k in body.factor.iterations]
+        counts += [k for group in problem.groups for k in group.factor.iterations]
     assert max(counts) <= 12, counts
 
 
@@ -92,7 +92,7 @@ def test_plates_of_a_single_layer_bend():
     bodies = distribute(tagged if COMM.rank == 0 else None, COMM)
     problem = elastic(bodies, 2, MULTIGRID, ["upper_low_x", "lower_low_x"])
     problem.solve(pulled(problem))
-    counts = [k for body in problem.each for k in body.factor.iterations]
+    counts = [k for group in problem.groups for k in group.factor.iterations]
     assert max(counts) <= 14, counts
 
 
@@ -100,7 +100,7 @@ def test_levels_are_given_back():
     """requirement: the same displacements after the levels have been freed, and once more."""
     problem = elastic(solids(), 2, replace(MULTIGRID, single=True))
     first = problem.solve(pulled(problem))
-    assert not any("_solver" in vars(body.factor) for body in problem.each)
+    assert not any("_solver" in vars(group.factor) for group in problem.groups)
     again = problem.solve(pulled(problem))
     np.testing.assert_allclose(again, first, rtol=0.0, atol=1e-9 * np.abs(first).max())
 

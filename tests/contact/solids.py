@@ -15,6 +15,7 @@ from thermowear.contact.operators.condensation import condense
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace
+from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.geometry.meshing.cells import divided_hexahedra, mesh_lattice, tagged_bodies
@@ -94,8 +95,8 @@ def condensed(tagged, degree, poisson_ratio=0.0, force=1.0, rigid_modes=None, **
     bodies, faces = gathered(tagged)
     elastic = elastic_bodies(bodies, degree, poisson_ratio, **supports)
     pairing = pair(*faces, Spatial(), degree + 2)
-    trace = gap_trace(elastic.spaces, pairing)
+    trace = gap_trace(elastic.spaces, Contacts((pairing,)))
     basis = pressure_basis(pairing, max(degree - 1, 1))
     rigid_modes = rigid_modes or [RigidMode(translation((0.0, 0.0, -1.0)), load=force)]
-    holder = hold(pairing, pairing.normals, rigid_modes)
-    return pairing, holder, condense(elastic, pairing, trace, trace, basis, holder)
+    holder = hold(Contacts((pairing,)), pairing.normals, rigid_modes)
+    return pairing, holder, condense(elastic, pairing.weights, trace, trace, basis, holder)

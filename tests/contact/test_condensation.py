@@ -13,6 +13,7 @@ from thermowear.contact.operators.condensation import condense, influence
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace, vector_trace
+from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
@@ -38,10 +39,12 @@ def condensed(degree, columns, poisson_ratio=0.3):
         Axisymmetric(),
         degree + 2,
     )
-    trace = gap_trace(elastic.spaces, pairing)
+    trace = gap_trace(elastic.spaces, Contacts((pairing,)))
     basis = pressure_basis(pairing, max(degree - 1, 1))
-    holder = hold(pairing, pairing.normals, [RigidMode(translation((0.0, -1.0)), load=1.0)])
-    contact = condense(elastic, pairing, trace, trace, basis, holder)
+    holder = hold(
+        Contacts((pairing,)), pairing.normals, [RigidMode(translation((0.0, -1.0)), load=1.0)]
+    )
+    contact = condense(elastic, pairing.weights, trace, trace, basis, holder)
     return elastic, pairing, trace, contact
 
 
@@ -88,12 +91,16 @@ def test_another_friction_needs_no_new_solution(columns, monkeypatch):
     """requirement: one influence gives the bodies' own compliance under any friction."""
     elastic, pairing, trace, _ = condensed(4, columns)
     basis = pressure_basis(pairing, 3)
-    answers = influence(elastic, pairing, trace, basis)
+    answers = influence(elastic, pairing.weights, trace, basis)
     along = np.broadcast_to([1.0, 0.0], pairing.normals.shape)
-    holder = hold(pairing, pairing.normals, [RigidMode(translation((0.0, -1.0)), load=1.0)])
+    holder = hold(
+        Contacts((pairing,)), pairing.normals, [RigidMode(translation((0.0, -1.0)), load=1.0)]
+    )
     λ = np.random.default_rng(1).uniform(0, 1e8, basis.shape[1])
     for friction in (-0.3, 0.6):
-        traction = vector_trace(elastic.spaces, pairing, pairing.normals + friction * along)
+        traction = vector_trace(
+            elastic.spaces, Contacts((pairing,)), pairing.normals + friction * along
+        )
         u = elastic.solve(traction @ (pairing.weights * (basis @ λ)))
         with monkeypatch.context() as patch:
             patch.setattr(type(elastic), "solve", None)

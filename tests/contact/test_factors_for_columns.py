@@ -8,6 +8,7 @@ from thermowear.contact.operators.condensation import condense
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace
+from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.pairing import pair
 from thermowear.laws.motions import translation
 
@@ -20,9 +21,11 @@ def compliance(choice):
     guided = "upper_face", "lower_face"  # loads along y on the bent faces count for nothing
     elastic = elastic_bodies(bodies, 2, 0.3, choice=choice, rollers=guided)
     pairing = pair(*faces, Spatial(), 4)
-    trace, basis = gap_trace(elastic.spaces, pairing), pressure_basis(pairing, 1)
-    holder = hold(pairing, pairing.normals, [RigidMode(translation((0.0, 0.0, -1.0)), load=1.0)])
-    return condense(elastic, pairing, trace, trace, basis, holder).compliance
+    trace, basis = gap_trace(elastic.spaces, Contacts((pairing,))), pressure_basis(pairing, 1)
+    holder = hold(
+        Contacts((pairing,)), pairing.normals, [RigidMode(translation((0.0, 0.0, -1.0)), load=1.0)]
+    )
+    return condense(elastic, pairing.weights, trace, trace, basis, holder).compliance
 
 
 def test_compliance_of_both_bodies():

@@ -29,6 +29,7 @@ from thermowear.contact.full.nitsche import (
 )
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace, vector_trace
+from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
@@ -58,7 +59,7 @@ def build(degree, columns, rows=(2, 2), name="plane-strain", poisson_ratio=0.3, 
     return SimpleNamespace(
         elastic=elastic,
         pairing=pairing,
-        trace=gap_trace(elastic.spaces, pairing),
+        trace=gap_trace(elastic.spaces, Contacts((pairing,))),
         stress=normal_traction(elastic, pairing),
         modes=(pairing.normals @ [0.0, -1.0])[:, None],
         bump=(pairing.points[:, 0] - 0.07) ** 2 / 4.0,
@@ -73,7 +74,7 @@ def method(case, kind, factor=1.0, friction=0.0, modes=None):
     traction, force_modes = case.trace, modes
     if friction:
         traction_direction = pairing.normals + friction * np.array([1.0, 0.0])
-        traction = vector_trace(elastic.spaces, pairing, traction_direction)
+        traction = vector_trace(elastic.spaces, Contacts((pairing,)), traction_direction)
     operators = elastic, pairing, case.trace, traction, modes, force_modes
     if kind == "penalty":
         return FullContact(*operators, factor * default_penalty(elastic, pairing))
@@ -191,7 +192,7 @@ def test_friction_in_the_section(kind):
     """requirement: a sliding contact is the condensed one, unsymmetric; friction shifts it."""
     case = build(3, (14, 14), (3, 3))
     traction_direction = case.pairing.normals + 0.4 * np.array([1.0, 0.0])
-    trace = vector_trace(case.elastic.spaces, case.pairing, traction_direction)
+    trace = vector_trace(case.elastic.spaces, Contacts((case.pairing,)), traction_direction)
     closed = np.zeros(len(case.bump))
     expected, motion = condensed(case, 2, closed, np.array([1e5]), trace)
     solution = method(case, kind, 10.0, friction=0.4).solve(closed, np.array([1e5]))

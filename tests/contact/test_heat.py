@@ -23,6 +23,7 @@ from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.thermal_opening import ThermalOpening, condense_distortion
 from thermowear.contact.operators.traces import gap_trace, value_trace
+from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.laws.motions import translation
@@ -46,12 +47,14 @@ def interface(degree, columns, partition=0.5, given=None, cooling=None):
     )
     spaces = lagrange_spaces(bodies, degree)
     traces = tuple(value_trace(spaces, side) for side in pairing.sides)
-    shifts = 1000.0, 300.0
+    shifts = tuple(np.full(len(pairing.weights), shift) for shift in (1000.0, 300.0))
     bath = bath_matrix(spaces, traces, pairing.weights, shifts)
     given = {"upper_end": 0.0, "lower_end": 0.0} if given is None else given
     conducting = conduction(bodies, Axisymmetric(), spaces, MATERIALS, cooling or {}, given, bath)
     basis = pressure_basis(pairing, max(degree - 1, 1))
-    face = condense_heat(conducting, FaceHeat(pairing.weights, basis, traces, shifts, partition))
+    layers = tuple(shift * basis.shape[1] for shift in shifts)
+    at_points = pairing.weights, basis, traces, shifts, layers, partition
+    face = condense_heat(conducting, FaceHeat(*at_points))
     still = conducting.solve(np.zeros(len(conducting.fixed)))
     return bodies, pairing, conducting, basis, face, baseline_response(still, traces, COMM)
 
@@ -135,10 +138,12 @@ def test_condensed_distortion_equals_the_bodies_own():
         "lower": ElasticMaterial(1e11, 0.2, 2e-5),
     }
     elastic = elasticity(bodies, Axisymmetric(), 5, materials, ["upper_end", "lower_end"])
-    trace = gap_trace(elastic.spaces, pairing)
-    holder = hold(pairing, pairing.normals, [RigidMode(translation((0, -1)), load=1.0)])
+    trace = gap_trace(elastic.spaces, Contacts((pairing,)))
+    holder = hold(
+        Contacts((pairing,)), pairing.normals, [RigidMode(translation((0, -1)), load=1.0)]
+    )
     load = elastic.thermal_load(conducting.spaces)
-    answers = influence(elastic, pairing, trace, basis, [load])
+    answers = influence(elastic, pairing.weights, trace, basis, [load])
     contact, loads = answers.condensed(trace, holder), pressure_loads(trace, answers.weighted)
     opening = ThermalOpening(elastic, loads, [load], answers.per_rise)
     distortion = condense_distortion(conducting, opening, face.nodes)
@@ -165,9 +170,9 @@ def test_opening_by_temperatures(stored):
     bodies, pairing, conducting, basis, _, _ = interface(2, (2, 3))
     materials = {part: ElasticMaterial(2e11, 0.3, 1.2e-5) for part in MATERIALS}
     elastic = elasticity(bodies, Axisymmetric(), 2, materials, ["upper_end", "lower_end"])
-    trace = gap_trace(elastic.spaces, pairing)
+    trace = gap_trace(elastic.spaces, Contacts((pairing,)))
     matrices = [elastic.thermal_load(conducting.spaces, only) for only in (None, "lower")]
-    answers = influence(elastic, pairing, trace, basis, matrices)
+    answers = influence(elastic, pairing.weights, trace, basis, matrices)
     loads = pressure_loads(trace, answers.weighted)
     opening = ThermalOpening(elastic, loads, matrices, answers.per_rise if stored else ())
     slope, *rises = np.random.default_rng(3).random((3, len(conducting.fixed)))

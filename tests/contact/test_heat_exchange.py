@@ -49,11 +49,13 @@ def faces(request):
     pairing = pair(*sides, kinematics, degree + 2)
     spaces = lagrange_spaces(bodies, degree)
     traces = tuple(value_trace(spaces, side) for side in pairing.sides)
-    bath = bath_matrix(spaces, traces, pairing.weights, SHIFTS)
+    shifts = tuple(np.full(len(pairing.weights), shift) for shift in SHIFTS)
+    bath = bath_matrix(spaces, traces, pairing.weights, shifts)
     conducting = conduction(bodies, kinematics, spaces, MATERIALS, COOLING, {}, bath)
     basis = pressure_basis(pairing, degree - 1)
     partition = np.linspace(0.2, 0.7, len(pairing.weights))
-    return pairing, conducting, (pairing.weights, basis, traces, SHIFTS, partition)
+    layers = tuple(shift * basis.shape[1] for shift in shifts)
+    return pairing, conducting, (pairing.weights, basis, traces, shifts, layers, partition)
 
 
 def array(matrix):

@@ -13,6 +13,7 @@ from thermowear.contact.operators.heat_exchange import FaceHeat, baseline_respon
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace, value_trace
+from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
@@ -108,9 +109,12 @@ def plane_contact(model, inner, columns, degree, gap, rigid_modes):
     elastic = elasticity(bodies, model, degree, materials, ["upper_end", "lower_end"])
     faces = (gather_face(bodies, f"{name}_face") for name in MODULI)
     pairing = pair(*faces, model, degree + 2)
-    trace, basis = gap_trace(elastic.spaces, pairing), pressure_basis(pairing, degree - 1)
-    holder = hold(pairing, pairing.normals, rigid_modes)
-    contact = condense(elastic, pairing, trace, trace, basis, holder)
+    trace, basis = (
+        gap_trace(elastic.spaces, Contacts((pairing,))),
+        pressure_basis(pairing, degree - 1),
+    )
+    holder = hold(Contacts((pairing,)), pairing.normals, rigid_modes)
+    contact = condense(elastic, pairing.weights, trace, trace, basis, holder)
     x = pairing.points[:, 0]
     return x, *solved(pairing, holder, contact, gap(x))
 
@@ -175,15 +179,15 @@ def test_two_slabs_with_friction_heat(h, divisions, place, cell_type):
     pairing = pair(*faces, Spatial(), 4)
     spaces = lagrange_spaces(bodies, 2)
     traces = tuple(value_trace(spaces, side) for side in pairing.sides)
-    shifts, materials = (
-        (1000.0, 300.0),
-        {"upper": ThermalMaterial(50.0), "lower": ThermalMaterial(15.0)},
-    )
+    shifts = tuple(np.full(len(pairing.weights), shift) for shift in (1000.0, 300.0))
+    materials = {"upper": ThermalMaterial(50.0), "lower": ThermalMaterial(15.0)}
     bath = bath_matrix(spaces, traces, pairing.weights, shifts)
     cold = {"upper_end": 0.0, "lower_end": 0.0}
     conducting = conduction(bodies, Spatial(), spaces, materials, {}, cold, bath)
     basis = pressure_basis(pairing, 1)
-    face = condense_heat(conducting, FaceHeat(pairing.weights, basis, traces, shifts, 0.3))
+    layers = tuple(shift * basis.shape[1] for shift in shifts)
+    at_points = pairing.weights, basis, traces, shifts, layers, 0.3
+    face = condense_heat(conducting, FaceHeat(*at_points))
     resting = baseline_response(np.zeros(len(conducting.fixed)), traces, bodies.comm)
     made = np.full(len(pairing.weights), 1e5)
     state = face.exchange(np.full(len(made), h)).state(made, resting)

@@ -14,6 +14,7 @@ from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace
+from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.face import Face, gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.search.projection import project
@@ -182,7 +183,7 @@ def test_traces(columns, growth, degree):
     for side in pairing.sides:
         values = value_trace(scalar, side).T @ field
         np.testing.assert_allclose(sum_over_ranks(COMM, values), (r / 0.07) ** degree, rtol=1e-12)
-    back = gap_trace(vector, pairing).T
+    back = gap_trace(vector, Contacts((pairing,))).T
     assert np.abs(sum_over_ranks(COMM, back @ u)).max() < 1e-12
     np.testing.assert_allclose(sum_over_ranks(COMM, back @ lifted), 1e-3, rtol=1e-12)
 

@@ -15,6 +15,7 @@ from thermowear.contact.full.nitsche import (
     stability_limit,
 )
 from thermowear.contact.operators.traces import gap_trace
+from thermowear.contact.search.contacts import Contacts
 
 from .test_traction import MODELS, build, deformed_blocks
 
@@ -29,7 +30,7 @@ def materials(poisson_ratio):
 def solve(elastic, pairing, stiffness, theta):
     """A cylinder on deformed blocks; theta None: penalty."""
     modes = (pairing.normals @ [0.0, -1.0])[:, None]
-    trace = gap_trace(elastic.spaces, pairing)
+    trace = gap_trace(elastic.spaces, Contacts((pairing,)))
     stress = None if theta is None else normal_traction(elastic, pairing)
     contact = FullContact(
         elastic, pairing, trace, trace, modes, modes, stiffness, stress, theta or 0

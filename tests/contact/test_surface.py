@@ -11,6 +11,7 @@ from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.operators.pressure import contact_zones, pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.clipping import parts_opposite
+from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.search.projection import project
 from thermowear.parallel import sum_over_ranks
@@ -321,7 +322,7 @@ def test_traces(divisions, order, maps, degree, cell_type):
     for side in pairing.sides:
         found = value_trace(scalar, side).T @ values
         np.testing.assert_allclose(sum_over_ranks(COMM, found), expected, atol=1e-11)
-    trace = gap_trace(vector, pairing).T
+    trace = gap_trace(vector, Contacts((pairing,))).T
     assert np.abs(sum_over_ranks(COMM, trace @ u)).max() < 1e-10
     lifted = elevated(bodies, vector)
     np.testing.assert_allclose(sum_over_ranks(COMM, trace @ lifted), 1e-3, rtol=1e-11)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from thermowear.contact.operators.pressure import unresolved_gap
+from thermowear.contact.search.contacts import Contacts
 
 FACETS, DEGREE = 4, 3
 
@@ -28,10 +29,10 @@ def face():
 def test_its_means_over_basis_functions_vanish(face):
     pairing, basis, _ = face
     gap = np.random.default_rng(1).normal(size=len(basis))
-    part = unresolved_gap(gap, np.ones(len(gap), dtype=bool), pairing, basis)
+    part = unresolved_gap(gap, np.ones(len(gap), dtype=bool), Contacts((pairing,)), basis)
     assert np.abs(basis.T @ (pairing.weights * part)).max() < 1e-14
     # and what is left is in the space: nothing of it is orthogonal to it
-    again = unresolved_gap(gap - part, np.ones(len(gap), dtype=bool), pairing, basis)
+    again = unresolved_gap(gap - part, np.ones(len(gap), dtype=bool), Contacts((pairing,)), basis)
     assert np.abs(again).max() < 1e-13
     assert np.abs(part).max() > 0.1
 
@@ -40,7 +41,7 @@ def test_facets_that_are_partly_open_keep_their_gap(face):
     pairing, basis, x = face
     gap = np.abs(np.sin(7 * x))
     pressing = x < 2.5
-    part = unresolved_gap(gap, pressing, pairing, basis)
+    part = unresolved_gap(gap, pressing, Contacts((pairing,)), basis)
     assert np.all(part[x > 2] == 0.0)
     assert np.abs(part[x < 2]).max() > 1e-3
     # the functions of the third facet reach into the second: their means hold, too
@@ -49,4 +50,6 @@ def test_facets_that_are_partly_open_keep_their_gap(face):
 
 def test_nothing_presses(face):
     pairing, basis, x = face
-    assert np.all(unresolved_gap(x, np.zeros(len(x), dtype=bool), pairing, basis) == 0.0)
+    assert np.all(
+        unresolved_gap(x, np.zeros(len(x), dtype=bool), Contacts((pairing,)), basis) == 0.0
+    )

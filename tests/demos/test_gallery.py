@@ -99,16 +99,20 @@ def test_pictures_become_small(gallery, tmp_path):
 
 @pytest.fixture
 def two(tmp_path):
-    """Two cases with results, one of them worn over time; a picture that is no more."""
+    """Cases with results, one worn over time, one of several bodies; a picture that is no more."""
     files = {
         "one": ("wear", "interface", "bodies"),
         "two": ("interface",),
+        "three": ("bodies", "profile_left", "profile_right", "interface_left"),
     }
     for name, drawn in files.items():
         (tmp_path / f"{name}.toml").write_text(f"# About {name}.\n\ntitle = 'Case {name}'\n")
         folder = tmp_path / "results" / name
         folder.mkdir(parents=True)
         summary = {"max_pressure_Pa": 5e7, "wear_coefficient_per": {}}
+        if name == "three":  # several bodies
+            per = {"wear_coefficient_per": {"pad": "pressure"}}
+            summary = {"max_pressure_Pa": 5e7, "contacts": {"left": per, "right": per}}
         (folder / "summary.json").write_text(json.dumps(summary))
         for picture in drawn:
             noise(folder / f"{picture}.png", 60, 40)
@@ -121,13 +125,15 @@ def test_a_page_of_all_cases(two, gallery):
     """requirement: title, text, command, figures, and pictures that are there."""
     gallery.write_gallery(two, sorted(two.glob("*.toml")), two / "results")
     page = (two / "README.md").read_text(encoding="utf-8")
-    assert re.findall(r"^## (.*)$", page, re.MULTILINE) == ["Case one", "Case two"]
-    for name in ("one", "two"):
+    assert re.findall(r"^## (.*)$", page, re.MULTILINE) == ["Case one", "Case three", "Case two"]
+    for name in ("one", "two", "three"):
         assert f"\nAbout {name}.\n" in page
         assert f"\n    python3 -m thermowear run demos/{name}.toml\n" in page
-    assert page.count("\nLargest pressure 50 MPa\n") == 2
+    assert page.count("\nLargest pressure 50 MPa\n") == 3
     shown = re.findall(r"\]\((.*)\)", page)
-    assert shown == [f"pictures/{n}.png" for n in ("one-bodies", "one-wear", "two-interface")]
+    of_three = ("three-bodies", "three-profile_left", "three-profile_right")
+    names = ("one-bodies", "one-wear", *of_three, "two-interface")
+    assert shown == [f"pictures/{name}.png" for name in names]
     assert {f"pictures/{path.name}" for path in (two / "pictures").iterdir()} == set(shown)
 
 

@@ -63,8 +63,8 @@ def test_turning_about_the_pivot_presses_the_whole_lining():
         normal = np.array([np.sin(angle), np.cos(angle)])
         arm = 0.1 * normal - geometry.pivot
         turned = np.array([-arm[1], arm[0]])
-        assert geometry.normal_arm(angle) == pytest.approx(turned @ normal, rel=1e-12)
-        assert geometry.normal_arm(angle) > 0
+        assert geometry.shoe.normal_arm(angle) == pytest.approx(turned @ normal, rel=1e-12)
+        assert geometry.shoe.normal_arm(angle) > 0
 
 
 @pytest.mark.parametrize(("end", "sign"), [("arc_start", 1), ("arc_end", -1)])
@@ -75,7 +75,7 @@ def test_a_lining_may_begin_on_the_line_of_the_pivot(end, sign):
     angle = getattr(shoe(), end)
     pivot = [f"{length:.17g} mm" for length in (50 * np.sin(angle), 50 * np.cos(angle))]
     geometry = shoe(pivot=pivot)
-    arms = sign * np.array([geometry.normal_arm(angle) for angle in geometry.arc])
+    arms = sign * np.array([geometry.shoe.normal_arm(angle) for angle in geometry.arc])
     assert abs(arms.min()) < 1e-15
     beyond = f"{np.degrees(angle) - sign:.17g} deg"
     assert fault(shoe, pivot=pivot, **{end: beyond})[0] == "pivot"

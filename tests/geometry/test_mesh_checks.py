@@ -149,7 +149,7 @@ SPOILT = {
     "nan": (_nowhere, "the coordinates of some nodes of the bodies are not finite"),
     "far": (_far, "a node lies at ("),
     "three cells on an edge": (_third, "1 edges of 'punch' have three or more cells"),
-    "cell twice": (_double, "1 cells are in both 'PUNCH' and 'PLATE', or twice"),
+    "cell twice": (_double, "1 cells occur twice in 'PUNCH'"),
     "crack": (_crack, "cells of 'punch' are not joined along 2 edges"),
     "hinge": (_hinge, "are joined by a single node"),
     "loose piece": (_loose, "1 of 9 cells of 'punch' are not joined to those held at 'PUNCH_TOP'"),

@@ -61,6 +61,7 @@ def ring():
         interfaces=(
             Interface(
                 faces=("punch_face", "plate_face"),
+                motion=Motion(angular_velocity=0.1),
                 friction=Constant(FRICTION),
                 conductance=Constant(1e6),
                 wear={0: wear},
@@ -71,7 +72,6 @@ def ring():
         ),
         meshes=OneMesh(mesh),
         discretisation=Discretisation(3),
-        motion=Motion(angular_velocity=0.1),
         heat=Heat(cooling={"punch_top": 2000.0, "plate_bottom": 2000.0}),
     )
 
@@ -98,10 +98,14 @@ def test_a_model_in_python_runs_in_as_the_case(ring):
     assert times[0] == pytest.approx(times[1], rel=1e-9)
 
 
-def test_a_pair_of_both_is_needed(ring):
-    """requirement: a model of more bodies than the solvers carry is refused in one line."""
-    with pytest.raises(tw.CaseError, match="two bodies, one interface and one holder; found 3"):
-        replace(ring, bodies=(*ring.bodies, ring.bodies[0]))
+def test_bodies_of_interfaces_and_holders(ring):
+    """requirement: interfaces and holders of missing bodies, and two holders, are refused."""
+    with pytest.raises(tw.CaseError, match=r"refer to the bodies \[0, 1\] of 1"):
+        replace(ring, bodies=ring.bodies[:1])
+    with pytest.raises(tw.CaseError, match="each may have one holder only"):
+        replace(ring, holders=2 * ring.holders)
+    with pytest.raises(tw.CaseError, match="at least one interface and one holder"):
+        replace(ring, holders=())
 
 
 def test_a_missing_property_is_named_by_its_material(ring):
@@ -116,8 +120,9 @@ def test_fretting_needs_a_history(ring):
     """requirement: no analysis fails by an assertion where a model lacks what it needs."""
     from thermowear.model import FrettingAnalysis
 
+    still = replace(ring, heat=None, interfaces=(replace(ring.interface, motion=Motion()),))
     with pytest.raises(tw.CaseError, match=r"^load\.history: missing"):
-        run(replace(ring, heat=None, motion=Motion()), FrettingAnalysis())
+        run(still, FrettingAnalysis())
 
 
 def test_equal_cases_make_equal_models():

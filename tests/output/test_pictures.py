@@ -11,8 +11,9 @@ from thermowear import CaseError
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
 from thermowear.output.pictures import make
-from thermowear.output.pictures.curves import draw_heat, draw_history, draw_interface
+from thermowear.output.pictures.curves import draw_interface
 from thermowear.output.pictures.make import make_pictures
+from thermowear.output.pictures.over_time import draw_heat, draw_history
 
 from ..conftest import COLD_RUNNING_IN, HOT
 

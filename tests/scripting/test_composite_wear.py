@@ -53,12 +53,15 @@ def with_wear(model, wear):
     return replace(model, interfaces=[replace(face, wear={face.one.body: wear})])
 
 
-@pytest.mark.parametrize("functions", [False, True])
-def test_laws_by_cell_tag(model, functions):
+@pytest.mark.parametrize("kind", ["laws", "functions", "regions"])
+def test_laws_by_cell_tag_or_region(model, kind):
     """
-    requirement: each tag wears by its own law: p_i = p̄ k_eff/k_i, steady and after running-in.
+    requirement: each tag or region has its own law: p_i = p̄ k_eff/k_i, steady and run in.
     """
-    if functions:
+    if kind == "regions":
+        regions = {"x < 20 mm": LAWS[LEFT], "x > 20 mm": LAWS[RIGHT]}
+        model = with_wear(model, regions)
+    if kind == "functions":
         model = with_wear(model, {LEFT: "2e-14/Pa*p*v", RIGHT: lambda p, v: 7e-14 * p * v})
     effective = 1 / ((2 / 3) / 2e-14 + (1 / 3) / 7e-14)
     known = np.array([7e-14, 2e-14])
@@ -80,6 +83,8 @@ def at_border(x):
         ({14: LAWS[LEFT]}, r"Interface\.wear of 'upper': unknown cell tag 14; known: 12, 13"),
         ({LEFT: LAWS[LEFT]}, r"wear\.upper\.materials\.upper:13: missing; the contact face"),
         ({LEFT: LAWS[LEFT], RIGHT: "1 m/s"}, r"Interface\.wear of 'upper', tag 13: "),
+        ({"x > 1": LAWS[LEFT]}, r"Interface\.wear of 'upper': in \"1\": "),
+        ({"x > 9 mm": LAWS[LEFT]}, r"materials\.x > 9 mm\.where: the border of this region cuts"),
     ],
 )
 def test_faults(model, wear, message):

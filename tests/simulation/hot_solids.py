@@ -48,7 +48,9 @@ class BlockMeshes:
         return None
 
 
-def hot_blocks(meshes, solver="auto", conductance=2e4, degree=2, free=("z",), heat=None):
+def hot_blocks(
+    meshes, solver="auto", conductance=2e4, degree=2, free=("z",), heat=None, motion=None
+):
     """Block pressed on a block that slides along x; conductance None: perfect contact."""
     wear = FaceWear(PowerWear(1e-14, 1.0, 1.0))
     return Model(
@@ -60,6 +62,7 @@ def hot_blocks(meshes, solver="auto", conductance=2e4, degree=2, free=("z",), he
         interfaces=(
             Interface(
                 faces=("upper_face", "lower_face"),
+                motion=motion or Motion(velocity=SPEED),
                 friction=Constant(FRICTION),
                 conductance=None if conductance is None else Constant(conductance),
                 wear={0: wear},
@@ -76,6 +79,5 @@ def hot_blocks(meshes, solver="auto", conductance=2e4, degree=2, free=("z",), he
         ),
         meshes=meshes,
         discretisation=Discretisation(degree, solver=solver),
-        motion=Motion(velocity=SPEED),
         heat=Heat(cooling=COOLING) if heat is None else heat,
     )

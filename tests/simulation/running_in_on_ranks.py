@@ -25,7 +25,8 @@ def running_in(kind, conductance=2e4, observer=None, expansion_factor=None, step
     """Result of the running-in with quasi-steady temperatures, or with temperatures in time."""
     heat = Heat(cooling=COOLING, transient=kind == "in time")
     free = ("z", "rotation-x", "rotation-y")
-    model = hot_blocks(MESHES, "direct", conductance, free=free, heat=heat)
+    motion = Motion(velocity=0.02)
+    model = hot_blocks(MESHES, "direct", conductance, free=free, heat=heat, motion=motion)
     bodies = tuple(
         replace(
             body,
@@ -39,7 +40,7 @@ def running_in(kind, conductance=2e4, observer=None, expansion_factor=None, step
         for body in model.bodies
     )
     holder = replace(model.holder, point=(0.03, 0.014, 0.0))
-    model = replace(model, bodies=bodies, holders=(holder,), motion=Motion(velocity=0.02))
+    model = replace(model, bodies=bodies, holders=(holder,))
     analysis = TransientAnalysis(
         end_time=TIMES[kind], tolerance=1e-2, max_steps=steps, largest_kept=np.inf
     )

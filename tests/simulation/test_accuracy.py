@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from thermowear.errors import ComputationError
+from thermowear.results.points import part_of
 from thermowear.simulation import Observer, run
 from thermowear.verification.check import run_starter, starter
 
@@ -104,3 +106,27 @@ def test_a_flat_shape_has_no_error():
     result = run_starter("stacked-blocks", "mesh.degree=1")
     assert estimates(result)["shape"] is None
     assert estimates(result)["temperature"] < 1e-9  # straight through: exact
+
+
+def test_errors_of_several_bodies():
+    """requirement: so are the errors of pad, disk and pad, with glued back plates."""
+    mesh = "mesh.degree=2", "mesh.elements=4"
+    for kind, quantity in (("initial", "pressure"), ("steady", "shape")):
+        found, fine = (
+            run_starter("disk-brake-two-pads", f"analysis.type={kind}", *words)
+            for words in (mesh, ("mesh.degree=5", "mesh.elements=12"))
+        )
+        true = max(
+            relative_change(part_of(found.interface, own), part_of(fine.interface, other), quantity)
+            for own, other in zip(found.contacts.values(), fine.contacts.values(), strict=True)
+        )
+        assert estimates(found)[quantity] / 3 < true < 3 * estimates(found)[quantity]
+
+
+def relative_change(coarse, fine, quantity):
+    """Mean change of the pressure, or largest one of the shape up to a translation."""
+    known = np.interp(coarse.x, fine.x, getattr(fine, quantity))
+    change = getattr(coarse, quantity) - known
+    if quantity == "pressure":
+        return coarse.weight @ np.abs(change) / (coarse.weight @ known)
+    return np.abs(change - np.average(change, weights=coarse.weight)).max() / np.ptp(known)

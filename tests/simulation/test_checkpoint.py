@@ -62,6 +62,11 @@ def assert_the_same(one, other):
         pytest.param(COLD_RUNNING_IN, ("mesh.degree=4",), id="cold"),
         pytest.param(HOT, ("mesh.degree=4", IN_TIME), id="hot"),
         pytest.param(
+            DEMOS / "sphere_on_block_coated.toml",
+            ("mesh.elements=20", "analysis.end_time=100 s", "analysis.tolerance=1e-2", SHORT),
+            id="coated",
+        ),
+        pytest.param(
             HOT,
             ("mesh.degree=2", IN_TIME, FADING.format("punch")),
             id="hot-varying",

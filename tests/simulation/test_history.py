@@ -73,7 +73,8 @@ def system():
         model=SimpleNamespace(meshes=SimpleNamespace(path=None)),
         comm=MPI.COMM_SELF,
         phases=lambda name: nullcontext(),
-        pairing=SimpleNamespace(points=points, gap=points[0]),
+        contacts=SimpleNamespace(points=points, gap=points[0]),
+        ranges_by_name={},
         elastic=SimpleNamespace(nodes=lambda: points),
     )
 

@@ -199,7 +199,7 @@ def test_first_contact_by_multigrid():
     """requirement: contact of the unworn faces, condensed by multigrid, to 1e-6."""
     slow = Motion(velocity=0.02)
     direct, multigrid = (
-        run(replace(hot_blocks(BlockMeshes(), solver), motion=slow), StaticAnalysis("initial"))
+        run(hot_blocks(BlockMeshes(), solver, motion=slow), StaticAnalysis("initial"))
         for solver in ("direct", "multigrid")
     )
     direct, multigrid = direct.interface.pressure, multigrid.interface.pressure
@@ -212,7 +212,8 @@ def test_first_contact_by_multigrid():
 def test_heat_carried_along(advection, conductance):
     """requirement: a strip that passes heats up as with the direct solver, to 1e-6."""
     heat = Heat(cooling=COOLING, advection=advection)
-    model = hot_blocks(COARSE, "multigrid", conductance, heat=heat)
+    passing = Motion(velocity=0.05, passes=True)
+    model = hot_blocks(COARSE, "multigrid", conductance, heat=heat, motion=passing)
     model = replace(
         model,
         bodies=tuple(
@@ -220,7 +221,6 @@ def test_heat_carried_along(advection, conductance):
             for body in model.bodies
             for part, m in body.materials.items()
         ),
-        motion=Motion(velocity=0.05, passes=True),
     )
     multigrid = run(model, STEADY)
     direct = run(replace(model, discretisation=Discretisation(2, solver="direct")), STEADY)

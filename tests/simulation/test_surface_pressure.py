@@ -177,3 +177,17 @@ def test_pressure_while_sliding_to_and_fro():
         by_pressure.interface.wear_1, expected, atol=1e-7 * expected.max(), rtol=0
     )
     assert by_pressure.summary["equilibrium_relative_error"] < 1e-9
+
+
+def test_error_estimate_under_a_pressure():
+    """requirement: the estimate of a steady state is of the same loads: that of a force alike."""
+    steady = {
+        "motion": {"velocity": "1 m/s"},
+        "wear": {"punch": {"coefficient": "1e-8 1/MPa"}},
+        "analysis": {"type": "steady"},
+        "contact": {"friction": 0.1},
+    }
+    pressed, held = run(BLOCKS, steady), run(BLOCKS, steady | {"load": {"mean_pressure": "2 MPa"}})
+    for key in ("pressure_error_estimate_relative", "shape_error_estimate_relative"):
+        expected = held.summary[key]
+        assert pressed.summary[key] == pytest.approx(expected, rel=1e-6, abs=1e-12)

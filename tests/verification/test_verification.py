@@ -13,12 +13,13 @@ from thermowear.verification.check import computed, starter
 
 LONG = SLOW | {
     "annular-punch", "beam-shakedown", "block-on-ring", "braking-stop", "case-2", "case-3",
-    "case-4", "case-5", "case-6", "case-7", "case-8", "case-9", "fretting-cylinder",
+    "case-4", "case-5", "case-6", "case-7", "case-8", "case-9", "clutch-pack", "coated-bush",
+    "coating", "fretting-cylinder",
     "fretting-wear", "fuel-fretting", "growing-cylinder", "growing-sphere",
     "half-plane-instability", "hertz-elliptical", "hertz-line", "methods-agree", "mindlin",
-    "minimality", "moving-band", "optimal-shape", "patch", "pin-on-disk-3d",
+    "minimality", "moving-band", "optimal-shape", "pad-disk-pad", "patch", "pin-on-disk-3d",
     "pressure-conductance", "reciprocating", "ring-3d", "running-in", "sliding-rod", "step-flux",
-    "temperature-dependent", "two-slabs",
+    "temperature-dependent", "two-shoes", "two-slabs",
 }  # fmt: skip
 """Cases of more than three seconds; run by `make verify`."""
 

@@ -66,8 +66,10 @@ class Recorder(Observer):
         if self._progress is not None:
             self._progress.note(text)
 
-    def output(self, time: float, interface: InterfaceFields, friction=None, track=None) -> None:
-        self._save(lambda: self._folder.output(time, interface, friction, track))
+    def output(
+        self, time: float, interface: InterfaceFields, friction=None, track=None, contacts=None
+    ) -> None:
+        self._save(lambda: self._folder.output(time, interface, friction, track, contacts))
 
     def frame(self, frame: Frame) -> None:
         self._save(lambda: self._folder.frame(frame))

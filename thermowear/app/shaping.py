@@ -53,11 +53,18 @@ def steady_case(source: Case | str | Path, overrides: tuple[str, ...] = ()) -> C
         If the case is invalid, or has no steady state.
     """
     case = source if isinstance(source, Case) else load(source, overrides)
+    if not isinstance(case, Case):
+        raise CaseError(
+            "shape: is for cases of two bodies; the steady worn shapes of several are "
+            "in profile_NAME.csv of a steady analysis"
+        )
     tables: dict[str, Any] = as_plain(case) | {"analysis": {"type": "steady"}}
     tables["geometry"] = {k: v for k, v in tables["geometry"].items() if k != "initial_shape"}
     if "heat" in tables:
         tables["heat"] = {k: v for k, v in tables["heat"].items() if k not in _IN_TIME}
-    return load(tables)
+    steady = load(tables)
+    assert isinstance(steady, Case)
+    return steady
 
 
 def shape(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import ctypes
-from itertools import pairwise
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from petsc4py import PETSc
 
@@ -120,6 +121,8 @@ class DirectSolver:
         """
         if not isinstance(loads, np.ndarray) and self._comm.size > 1:
             loads = loads.toarray()  # MUMPS needs sparse right-hand sides on one rank
+        elif not isinstance(loads, np.ndarray) and loads.nnz == 0:
+            return np.zeros(loads.shape, order="F")  # MUMPS needs entries (error -22, at random)
         flat = loads if loads.ndim == 2 else loads[:, None]  # a rank may own nothing
         dense = isinstance(flat, np.ndarray)
         right = self._dense(np.asfortranarray(flat)) if dense else self._sparse(flat)
@@ -155,58 +158,75 @@ class DirectSolver:
         return PETSc.Mat().createTranspose(transposed)
 
 
-class BodySolvers:
-    """Triangular factorisation of a matrix that does not couple the bodies.
+class GroupSolvers:
+    """Solvers of groups of bodies that are not coupled.
 
     Parameters
     ----------
-    matrix : petsc4py.PETSc.Mat
-        Assembled and distributed by rows.
-    starts : ndarray of int, shape (n_bodies + 1,)
-        Owned rows at which the bodies start, and their number.
-    symmetry, dim : str, int
-        See `DirectSolver`.
+    rows : sequence of slice or ndarray of int
+        Owned rows of each group.
+    columns : sequence of ndarray of int
+        Multipliers of the joints in each group.
+    make : callable
+        Solver of a group by its index.
     one_at_a_time : bool
-        True if a factor is made when it is first needed, and freed before that of another body.
+        True if a solver is made when it is first needed, and freed before that of another group.
     """
 
     def __init__(
         self,
-        matrix: PETSc.Mat,
-        starts: np.ndarray,
-        symmetry: str,
-        dim: int,
+        rows: Sequence[slice | np.ndarray],
+        columns: Sequence[np.ndarray],
+        make: Callable[[int], Any],
         one_at_a_time: bool = False,
     ):
-        self._symmetry, self._dim, self._alone = symmetry, dim, one_at_a_time
-        self._rows = [slice(start, end) for start, end in pairwise(starts)]
-        self._blocks = [_diagonal_block(matrix, rows) for rows in self._rows]
-        assert sum(map(_entries, self._blocks)) == _entries(matrix), "the matrix couples bodies"
-        self._factors: dict[int, DirectSolver] = {}
+        self._rows, self._columns, self._make, self._alone = rows, columns, make, one_at_a_time
+        self._factors: dict[int, Any] = {}
         if not one_at_a_time:
-            for index in range(len(self._rows)):
-                self.of(index)
+            for group in range(len(rows)):
+                self.of(group)
 
-    def of(self, index: int) -> DirectSolver:
-        """Solver of one body. Every rank calls."""
-        if index not in self._factors:
+    def of(self, group: int) -> Any:
+        """Solver of one group. Every rank calls."""
+        if group not in self._factors:
             self.release()
-            self._factors[index] = DirectSolver(self._blocks[index], self._symmetry, self._dim)
-        return self._factors[index]
+            self._factors[group] = self._make(group)
+        return self._factors[group]
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Solve for one or several right-hand sides, see `DirectSolver.solve`."""
         result = np.empty(loads.shape, order="F")
-        for index, rows in enumerate(self._rows):
-            result[rows] = self.of(index).solve(loads[rows])
+        for group, rows in enumerate(self._rows):
+            result[rows] = self.of(group).solve(loads[rows])
         return result
 
     def solve_transposed(self, loads: np.ndarray) -> np.ndarray:
         """Solve with the transposed matrix; dense loads, shapes as in `solve`."""
         result = np.empty(loads.shape, order="F")
-        for index, rows in enumerate(self._rows):
-            result[rows] = self.of(index).solve_transposed(loads[rows])
+        for group, rows in enumerate(self._rows):
+            result[rows] = self.of(group).solve_transposed(loads[rows])
         return result
+
+    def closing(self, jumps: np.ndarray) -> np.ndarray:
+        """Values without loads of given weak jumps, see `bulk.joints.joined_solver`."""
+        result = np.zeros(sum(len(np.r_[rows]) for rows in self._rows))
+        for solver, columns, rows in self._joined:
+            result[rows] = solver.closing(jumps[columns])
+        return result
+
+    def multipliers(self, residual: np.ndarray, jumps: np.ndarray) -> np.ndarray:
+        """Multipliers of all joints, see `bulk.joints.joined_solver`."""
+        result = np.zeros(len(jumps))
+        for solver, columns, rows in self._joined:
+            result[columns] = solver.multipliers(residual[rows], jumps[columns])
+        return result
+
+    @property
+    def _joined(self):
+        """Solvers of groups with joints, with their multipliers and rows."""
+        for group, (columns, rows) in enumerate(zip(self._columns, self._rows, strict=True)):
+            if len(columns):
+                yield self.of(group), columns, rows
 
     def release(self) -> None:
         """Free the memory of a factor that is not kept anyway."""
@@ -217,18 +237,6 @@ class BodySolvers:
         """Free the memory of the factors."""
         while self._factors:
             self._factors.popitem()[1].destroy()
-
-
-def _diagonal_block(matrix: PETSc.Mat, rows: slice) -> PETSc.Mat:
-    """Part of a matrix with given owned rows, and columns alike. Every rank calls."""
-    first = matrix.getOwnershipRange()[0] + rows.start
-    own = PETSc.IS().createStride(int(rows.stop - rows.start), int(first), 1, comm=matrix.comm)
-    return matrix.createSubMatrix(own, own)
-
-
-def _entries(matrix: PETSc.Mat) -> int:
-    """Number of entries on all ranks."""
-    return int(matrix.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"])
 
 
 def return_freed_memory() -> None:

@@ -6,7 +6,7 @@ Bodies in space are factorised as long as the factor fits into the memory. Secti
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,13 +14,16 @@ from petsc4py import PETSc
 
 import numpy as np
 
+from ..errors import CaseError
 from .bodies import Bodies
-from .direct_solver import BodySolvers, DirectSolver
+from .direct_solver import GroupSolvers
 from .field import reference_element
+from .group_solvers import AnyFactor, factorised, group_solvers
+from .joints.joint import NO_JOINTS, Joints
 from .multigrid_solver import MultigridSolver
-from .spaces import Spaces
+from .spaces import Spaces, groups_of
 
-AnySolver = DirectSolver | BodySolvers | MultigridSolver
+AnySolver = AnyFactor | GroupSolvers | MultigridSolver
 """Solver of the equations of the bodies; all have the same methods."""
 
 _MEASURED = 61_605, 0.49e9, 1.40
@@ -53,7 +56,7 @@ class SolverChoice:
     factor_memory : float
         Estimated memory of the factors of the stiffness; NaN in a section [bytes].
     largest_factor : float
-        That of the body with most unknowns [bytes].
+        That of the body, or of glued ones, with most unknowns [bytes].
     available : float
         Memory available on this machine [bytes].
     single : bool
@@ -95,6 +98,20 @@ class SolverChoice:
         """
         return self.iterative and self.factor_memory / 9 <= _PART_MEANWHILE * self.available
 
+    def require_direct(self) -> None:
+        """Refuse multigrid for glued bodies.
+
+        Raises
+        ------
+        CaseError
+        """
+        if self.iterative:
+            raise CaseError(
+                "mesh.solver: glued bodies are solved by a factor only, not by multigrid; an "
+                f"estimated {self.factor_memory / 1e9:.2g} GB of {self.available / 1e9:.2g} GB "
+                "available; use fewer elements, a lower degree, or one mesh for the glued bodies"
+            )
+
     def note(self) -> str | None:
         """Line for the console; None for small bodies and sections, which are factorised."""
         if not self.iterative and not self.unknowns >= min(_MANY.values()):
@@ -111,7 +128,13 @@ class SolverChoice:
         return {"solver": self.name, "factor_memory_estimate_bytes": memory}
 
 
-def choose_solver(asked: str, bodies: Bodies, degree: int, single: bool) -> SolverChoice:
+def choose_solver(
+    asked: str,
+    bodies: Bodies,
+    degree: int,
+    single: bool,
+    glued: Sequence[tuple[str, str]] = (),
+) -> SolverChoice:
     """Choose the linear solver of bodies. Every rank calls.
 
     Parameters
@@ -123,22 +146,35 @@ def choose_solver(asked: str, bodies: Bodies, degree: int, single: bool) -> Solv
         Degree of the displacement.
     single : bool
         True if the analysis needs a single solution and no compliance.
+    glued : sequence of tuple of str
+        Pairs of glued surfaces. Glued bodies are solved by one factor, never by multigrid.
+
+    Raises
+    ------
+    CaseError
+        If multigrid is asked for, or needed, and bodies are glued.
     """
     if bodies.dim == 2:
         return SolverChoice(reason="section")
-    sizes = [count_unknowns(body.mesh, degree) for body in bodies.each]
+    joined = [(bodies.index_of(first), bodies.index_of(second)) for first, second in glued]
+    each = [count_unknowns(body.mesh, degree) for body in bodies.each]
+    groups = groups_of(len(each), joined)
+    sizes = [sum(each[k] for k in group) for group in groups]
     factors, unknowns = [factor_memory(size) for size in sizes], sum(sizes)
     memory = sum(factors)
-    kind = bodies.each[int(np.argmax(sizes))].cell_type
+    kind = bodies.each[int(np.argmax(each))].cell_type
     available = bodies.comm.bcast(available_memory(), root=0)
     name, reason = asked, "as given"
     if asked == "auto":
         name, reason = "direct", "the factor fits into the memory"
         if memory > _PART * available:
             name, reason = "multigrid", "the factor would not fit into the memory"
-        elif single and unknowns >= _MANY[kind] and degree <= _LOW_DEGREE:
+        elif single and not joined and unknowns >= _MANY[kind] and degree <= _LOW_DEGREE:
             name, reason = "multigrid", "faster for a single solution"
-    return SolverChoice(name, unknowns, memory, max(factors), available, single, reason)
+    choice = SolverChoice(name, unknowns, memory, max(factors), available, single, reason)
+    if joined:
+        choice.require_direct()
+    return choice
 
 
 def count_unknowns(mesh, degree: int) -> int:
@@ -181,6 +217,7 @@ def linear_solver(
     symmetry: str = "definite",
     coarse: Callable[[Spaces], PETSc.Mat] | None = None,
     coupled: bool = False,
+    joints: Joints = NO_JOINTS,
 ) -> AnySolver:
     """Set up the chosen solver of a matrix. Every rank calls.
 
@@ -197,9 +234,14 @@ def linear_solver(
         See `MultigridSolver`.
     coupled : bool
         True if the matrix couples the bodies.
+    joints : Joints
+        Joints of glued bodies.
     """
+    if joints.count:
+        choice.require_direct()
     if choice.iterative and symmetry in ("definite", "none"):
         return MultigridSolver(matrix, spaces, fixed, coarse, symmetric=symmetry == "definite")
-    if coupled or len(spaces.each) == 1:
-        return DirectSolver(matrix, symmetry, dim=spaces.dim)
-    return BodySolvers(matrix, spaces.starts, symmetry, spaces.dim, choice.one_at_a_time)
+    if coupled or len(spaces.groups) == 1:
+        border = joints.border(range(len(spaces.each)), slice(None))
+        return factorised(matrix, border, fixed, symmetry, spaces.dim)
+    return group_solvers(matrix, spaces, joints, fixed, symmetry, choice.one_at_a_time)

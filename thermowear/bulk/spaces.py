@@ -9,16 +9,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeAlias
 
 from petsc4py import PETSc
 
 import numpy as np
 import scipy.sparse as sp
 from dolfinx import fem
+from scipy.sparse.csgraph import connected_components
 
 from .bodies import Bodies
 from .compiled import nodal_loads
 from .field import as_function, lagrange_space, owned
+
+Rows: TypeAlias = "slice | np.ndarray"
+"""Owned rows of a group of bodies, in ascending order."""
 
 
 @dataclass(frozen=True)
@@ -28,9 +33,12 @@ class Spaces:
     Attributes
     ----------
     each : tuple of dolfinx.fem.FunctionSpace
+    glued : tuple of tuple of int
+        Pairs of bodies that are glued to each other.
     """
 
     each: tuple[fem.FunctionSpace, ...]
+    glued: tuple[tuple[int, int], ...] = ()
 
     @cached_property
     def comm(self):
@@ -74,20 +82,42 @@ class Spaces:
         parts = zip(self.each, self.split(values), strict=True)
         return [as_function(space, part, name) for space, part in parts]
 
-    def body_of(self, rows: np.ndarray) -> int:
-        """Index of the body that owned rows belong to, all to the same. Every rank calls."""
-        own = int(np.searchsorted(self.starts, rows[0], side="right")) - 1 if len(rows) else -1
-        return max(self.comm.allgather(own))
+    @cached_property
+    def groups(self) -> tuple[tuple[int, ...], ...]:
+        """Indices of the bodies of each group: of one body, or of those glued to each other."""
+        return groups_of(len(self.each), self.glued)
 
-    def placed(self, index: int, rows: np.ndarray | sp.csr_matrix):
-        """Rows of one body as rows of all, the others zero."""
+    def rows(self, *bodies: int) -> Rows:
+        """Owned rows of bodies, given in ascending order."""
+        if len(bodies) == 1:
+            return slice(*map(int, self.starts[bodies[0] : bodies[0] + 2]))
+        return np.concatenate([np.arange(*self.starts[k : k + 2]) for k in bodies])
+
+    def of_bodies(self, *bodies: int) -> Spaces:
+        """Spaces of some bodies alone."""
+        return Spaces(tuple(self.each[k] for k in bodies))
+
+    def group_of(self, rows: np.ndarray) -> int:
+        """Index of the group that owned rows belong to, all to the same. Every rank calls."""
+        own = int(np.searchsorted(self.starts, rows[0], side="right")) - 1 if len(rows) else -1
+        body = max(self.comm.allgather(own))
+        return next(k for k, bodies in enumerate(self.groups) if body in bodies)
+
+    def within(self, group: int, rows: np.ndarray) -> np.ndarray:
+        """Positions of some owned rows among those of their group."""
+        every = self.rows(*self.groups[group])
+        return rows - every.start if isinstance(every, slice) else np.searchsorted(every, rows)
+
+    def placed(self, at: Rows, rows: np.ndarray | sp.csr_matrix):
+        """Values of given owned rows (of a body or a group) as rows of all, the others zero."""
         if isinstance(rows, np.ndarray):
             result = np.zeros((self.owned, *rows.shape[1:]), order="F")
-            self.split(result)[index][...] = rows
+            result[at] = rows
             return result
-        before, after = self.starts[index], self.owned - self.starts[index + 1]
-        none = (sp.csr_matrix((count, rows.shape[1])) for count in (before, after))
-        return sp.vstack([next(none), rows, next(none)], format="csr")
+        counts = np.zeros(self.owned + 1, dtype=rows.indptr.dtype)
+        counts[1:][at] = np.diff(rows.indptr)
+        entries = rows.data, rows.indices, np.cumsum(counts, dtype=rows.indptr.dtype)
+        return sp.csr_matrix(entries, shape=(self.owned, rows.shape[1]))
 
     def loads(self, works: Iterable[Callable]) -> np.ndarray:
         """Load vector of linear forms, one for each body, as functions of the test function."""
@@ -118,6 +148,26 @@ class Spaces:
 def lagrange_spaces(bodies: Bodies, degree: int, components: int = 0) -> Spaces:
     """Continuous Lagrange spaces of all bodies, see `field.lagrange_space`."""
     return Spaces(tuple(lagrange_space(body.mesh, degree, components) for body in bodies.each))
+
+
+def groups_of(count: int, glued: Sequence[tuple[int, int]]) -> tuple[tuple[int, ...], ...]:
+    """Groups of bodies, by their indices, from their number and pairs of those glued together."""
+    pairs = np.array(glued, dtype=int).reshape(-1, 2).T
+    links = sp.coo_matrix((np.ones(pairs.shape[1]), pairs), shape=(count, count))
+    number, group = connected_components(links, directed=False)
+    return tuple(tuple(map(int, np.flatnonzero(group == k))) for k in range(number))
+
+
+def distributed(spaces: Spaces, columns: sp.csr_matrix) -> PETSc.Mat:
+    """Matrix of owned rows (n_owned, n) in PETSc, its columns distributed over the ranks too."""
+    return in_petsc(columns, (spaces.owned, spaces.total), spaces.comm)
+
+
+def in_petsc(columns: sp.csr_matrix, rows: tuple[int, int], comm) -> PETSc.Mat:
+    """Matrix in PETSc with given numbers of owned and of all rows; columns are distributed."""
+    csr = columns.indptr.astype(PETSc.IntType), columns.indices.astype(PETSc.IntType), columns.data
+    sizes = rows, (PETSc.DECIDE, columns.shape[1])
+    return PETSc.Mat().createAIJ(sizes, csr=csr, comm=comm)
 
 
 def block_diagonal(blocks: Sequence[PETSc.Mat]) -> PETSc.Mat:

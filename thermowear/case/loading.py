@@ -18,9 +18,16 @@ from pydantic import ValidationError
 
 from ..errors import MOST_FAULTS, CaseError, quoted, shortened
 from ..user_files import read_text
+from .assembly.geometry import known_assemblies
+from .assembly.schema import AssemblyCase
+from .tables.geometry_choice import known_geometries
 from .tables.schema import Case
+from .validation.assembly import check as check_assembly
 from .validation.checks import check
 from .values.section import FOLDER, KeyFault, Section
+
+AnyCase = Case | AssemblyCase
+"""Case of two bodies, or of several."""
 
 LARGEST_FILE = 2_000_000
 """Largest size of a case file [bytes]."""
@@ -66,7 +73,7 @@ _MESSAGES = {
 _ANALYSES = "'initial', 'steady', 'transient', 'fretting', 'reciprocating', 'stability'"
 
 
-def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -> Case:
+def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -> AnyCase:
     """Read and check a case.
 
     Parameters
@@ -80,7 +87,7 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
 
     Returns
     -------
-    Case
+    Case or AssemblyCase
 
     Raises
     ------
@@ -92,14 +99,26 @@ def load(source: str | Path | dict[str, Any], overrides: tuple[str, ...] = ()) -
     for text in overrides:
         tables = _override(tables, text)
     check_tables(tables)
+    kind = AssemblyCase if _is_assembly(tables) else Case
     try:
-        case = Case.model_validate(tables, context=context)
+        case = kind.model_validate(tables, context=context)
     except ValidationError as error:
         found = error.errors(include_url=False)
-        lines = [_message(fault) for fault in found[:MOST_FAULTS]]
+        lines = [_message(fault, kind) for fault in found[:MOST_FAULTS]]
         raise CaseError(*lines, more=len(found) - len(lines)) from None
-    check(case)
+    if isinstance(case, AssemblyCase):
+        check_assembly(case)
+    else:
+        check(case)
     return case
+
+
+def _is_assembly(tables: dict[str, Any]) -> bool:
+    """Test for a case of several bodies, which has tables of contacts and holders."""
+    geometry = tables.get("geometry")
+    kind = geometry.get("type") if isinstance(geometry, dict) else None
+    only = known_assemblies().keys() - known_geometries().keys()
+    return bool(tables.keys() & {"holders", "contacts"}) or (isinstance(kind, str) and kind in only)
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -155,10 +174,10 @@ def _value(given: str, text: str) -> Any:
     return parsed["value"]
 
 
-def _message(fault: Any) -> str:
+def _message(fault: Any, kind: type[Section]) -> str:
     """Message of one fault: the key's path, the value found, the values allowed."""
     location = fault["loc"]
-    if location[0] == "analysis":
+    if location[:1] == ("analysis",):
         location = (*location[:1], *location[2:])  # pydantic puts the type of analysis second
     path = ".".join(map(str, location))
     if fault["type"] == "union_tag_not_found":
@@ -167,19 +186,20 @@ def _message(fault: Any) -> str:
         return f"{path}.type: found {quoted(fault['input']['type'])}; must be one of {_ANALYSES}"
     if fault["type"] == "value_error":
         error = fault["ctx"]["error"]
-        return f"{path}.{error.key}: {error}" if isinstance(error, KeyFault) else f"{path}: {error}"
+        key = (error.key,) if isinstance(error, KeyFault) else ()
+        return f"{'.'.join(map(str, (*location, *key)))}: {error}"
     if fault["type"] == "extra_forbidden":
-        return f"{path}: unknown key{_suggestion(location)}"
+        return f"{path}: unknown key{_suggestion(location, kind)}"
     message = _MESSAGES.get(fault["type"], fault["msg"]).format(**fault.get("ctx", {}))
     if fault["type"] == "missing" or isinstance(fault["input"], dict):
         return f"{path}: {message}"
     return f"{path}: found {quoted(fault['input'])}; {message}"
 
 
-def _suggestion(location: tuple[Any, ...]) -> str:
+def _suggestion(location: tuple[Any, ...], kind: type[Section]) -> str:
     """Hint at the most similar known key of the same tables."""
-    table = Case.model_fields.get(location[0])
-    sections = _sections(table.annotation) if table else (Case,)
+    table = kind.model_fields.get(location[0])
+    sections = _sections(table.annotation) if table else (kind,)
     words = {
         field.alias or name for section in sections for name, field in section.model_fields.items()
     }

@@ -8,6 +8,7 @@ fraction of the local rate, and means shared by several points.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -48,13 +49,13 @@ class Distribution:
 
     Attributes
     ----------
-    share : float
+    share : float or ndarray, shape (n,)
         Fraction of the local rate that stays in place; without means, the duty factor: the fraction
         of the time for which each point is in contact (disk under a pad: its angle over 2 π).
     means : Means or None
     """
 
-    share: float = 0.0
+    share: float | np.ndarray = 0.0
     means: Means | None = None
 
     @property
@@ -72,10 +73,49 @@ class Distribution:
 class InPlace(Distribution):
     """Wear in place, with a duty factor of 1."""
 
-    share: float = 1.0
+    share: float | np.ndarray = 1.0
 
 
 IN_PLACE = InPlace()
+
+
+def joined_distributions(
+    each: Sequence[Distribution], counts: Sequence[int], tracks: Sequence[str] = ()
+) -> Distribution:
+    """Distribution of the wear at the points of several interfaces, see `joined_laws`.
+
+    Parameters
+    ----------
+    each : sequence of Distribution
+    counts : sequence of int
+        Number of points of each interface.
+    tracks : sequence of str
+        Name of the track that passes each interface, by default one of its own. A track that passes
+        several of them wears by the sum of what each causes, for the points of all of them.
+    """
+    if len(each) == 1 or all(isinstance(one, InPlace) for one in each):
+        return each[0]
+    share = np.concatenate(
+        [np.broadcast_to(one.share, n) for one, n in zip(each, counts, strict=True)]
+    )
+    coverage = np.zeros_like(share)
+    ends, shared = np.cumsum(counts), dict[str, list[tuple[Distribution, slice]]]()
+    for k, (one, end, n) in enumerate(zip(each, ends, counts, strict=True)):
+        shared.setdefault(tracks[k] if tracks else str(k), []).append((one, slice(end - n, end)))
+    rows, reach, varies = [], [], False
+    for group in shared.values():
+        for _, points in group:
+            coverage[points] = sum(one.coverage for one, _ in group)
+        means = [(one.means, points) for one, points in group if one.means is not None]
+        if means:
+            rows.append(np.zeros((len(means[0][0].rows), len(share))))
+            reach.append(np.zeros((len(share), len(means[0][0].rows))))
+        for known, points in means:
+            rows[-1][:, points], reach[-1][points] = known.rows, known.reach
+            varies |= known.varies
+    if not rows:
+        return Distribution(share)
+    return Distribution(share, Means(np.vstack(rows), np.hstack(reach), varies, coverage))
 
 
 def uniform_track(lengths: np.ndarray) -> Distribution:

@@ -1,4 +1,4 @@
-"""Wear law of a face of several materials: one of several laws at each contact point."""
+"""Wear law of faces of several materials, or of several interfaces: one at each contact point."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .interfaces import Law, LocalState
+from .layered_wear import LayeredWear, layers_of
 from .power_wear import PowerWear
 
 
@@ -68,4 +69,46 @@ def law_by_point(laws: Sequence[Law], at: np.ndarray) -> Law:
         np.array([law.coefficient for law in powers])[at],
         np.array([law.pressure_exponent for law in powers])[at],
         np.array([law.velocity_exponent for law in powers])[at],
+    )
+
+
+def joined_laws(laws: Sequence[Law | None], counts: Sequence[int]) -> Law:
+    """Law of the points of several interfaces; a power law if all of them are.
+
+    If any has layers, so has the law: those of the others have no thickness.
+
+    Parameters
+    ----------
+    laws : sequence of Law or None
+        Law of the points of each interface; None where nothing wears.
+    counts : sequence of int
+        Number of points of each interface.
+    """
+    known = [PowerWear(0.0) if law is None else law for law in laws]
+    if len(known) == 1:
+        return known[0]
+    if any(isinstance(law, LayeredWear) for law in known):
+        return _joined_layers([layers_of(law) for law in known], counts)
+    powers = [law for law in known if type(law) is PowerWear]
+    if len(powers) < len(known):
+        return LawByPoint(tuple(known), np.repeat(np.arange(len(known)), counts))
+    columns = (
+        np.concatenate(
+            [np.broadcast_to(getattr(law, name), n) for law, n in zip(powers, counts, strict=True)]
+        )
+        for name in ("coefficient", "pressure_exponent", "velocity_exponent")
+    )
+    return PowerWear(*columns)
+
+
+def _joined_layers(each: Sequence[LayeredWear], counts: Sequence[int]) -> LayeredWear:
+    """Layers of the points of several interfaces, counted from the substrate up."""
+    most = max(len(face.thickness) for face in each)
+    missing = [most - len(face.thickness) for face in each]
+    pairs = list(zip(each, missing, strict=True))
+    thickness = [(0.0,) * n + face.thickness for face, n in pairs]
+    laws = [(face.laws[0],) * n + face.laws for face, n in pairs]
+    return LayeredWear(
+        tuple(np.repeat(layer, counts) for layer in zip(*thickness, strict=True)),
+        tuple(joined_laws(layer, counts) for layer in zip(*laws, strict=True)),
     )

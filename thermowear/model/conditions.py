@@ -1,4 +1,4 @@
-"""Operating conditions: rigid holder of body 1 with its loads, sliding motion, heat."""
+"""Operating conditions: rigid holders with their loads, sliding motion, heat."""
 
 from __future__ import annotations
 
@@ -11,10 +11,14 @@ from ..laws.time_course import LoadHistory, TimeFunction
 
 @dataclass(frozen=True)
 class Holder:
-    """Rigid holder of a body: its free motions, and the loads or given motions along them.
+    """Rigid holder of bodies: its free motions, and the loads or given motions along them.
 
     Attributes
     ----------
+    bodies : tuple of int
+        Indices of the bodies in the model that it moves.
+    name : str
+        Name for results and messages; empty for the holder of a pair.
     load_direction : tuple of float
         Unit vector of the load direction, towards body 2.
     pivot : tuple of float
@@ -54,6 +58,8 @@ class Holder:
     history: LoadHistory | None = None
     surface_forces: Mapping[str, float] = field(default_factory=dict)
     surface_pressures: Mapping[str, float] = field(default_factory=dict)
+    bodies: tuple[int, ...] = (0,)
+    name: str = ""
 
 
 @dataclass(frozen=True)

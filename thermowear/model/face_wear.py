@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
+from ..errors import CaseError
 from ..laws.coefficients import Multipliers
 from ..laws.distribution import Distribution, InPlace
+from ..laws.expressions import Region
 from ..laws.interfaces import Law, LocalState
 from ..laws.law_by_point import law_by_point
+from ..laws.layered_wear import layers_of
 from ..laws.plausible import typical_value
 from .tracks import Track
 
@@ -23,6 +26,7 @@ class FaceWear:
     Attributes
     ----------
     law : Law
+        A `LayeredWear` for a face with layers.
     factors : Multipliers
         Tabulated factors of the rate, by the temperature of the face, the pressure and the speed.
     friction_exponent : float
@@ -67,8 +71,22 @@ class FaceWear:
 
     @property
     def varies(self) -> bool:
-        """True if the rate depends on temperature or depth, or has tabulated factors."""
-        return bool(self.law.variables & {"T", "depth"} or self.factors.variables)
+        """True if the rate depends on temperature or depth, or has tabulated factors.
+
+        The law of each layer counts, not the passage from one to the next.
+        """
+        variables = layers_of(self.law).inner_variables
+        return bool(variables & {"T", "depth"} or self.factors.variables)
+
+    @property
+    def has_layers(self) -> bool:
+        """True if the face is coated."""
+        return bool(layers_of(self.law).thickness)
+
+    @property
+    def worn_through(self) -> FaceWear:
+        """Wear of the face without its layers."""
+        return replace(self, law=layers_of(self.law).substrate) if self.has_layers else self
 
     def typical_rate(self, friction: float) -> float:
         """Wear rate in a typical state [m/s]."""
@@ -101,16 +119,29 @@ class CompositeWear:
     Attributes
     ----------
     parts : mapping of str to FaceWear
-        Wear by part of the body; in place.
+        Wear by part of the body; in place, without layers.
+    regions : mapping of str to (Region, FaceWear)
+        Regions of the face whose wear takes the place of that of the part, by name.
     """
 
     parts: Mapping[str, FaceWear]
+    regions: Mapping[str, tuple[Region, FaceWear]] = field(default_factory=dict)
+
+    @property
+    def _named(self) -> dict[str, FaceWear]:
+        """Wear by part and by region."""
+        return {**self.parts, **{name: wear for name, (_, wear) in self.regions.items()}}
+
+    def __post_init__(self) -> None:
+        coated = [part for part, wear in self._named.items() if wear.has_layers]
+        if coated:
+            raise CaseError(f"wear of {coated[0]}: a face of several materials may have no layers")
 
     @cached_property
     def each(self) -> tuple[FaceWear, ...]:
         """The different laws of the face."""
         different: list[FaceWear] = []
-        for wear in self.parts.values():
+        for wear in (*self.parts.values(), *(wear for _, wear in self.regions.values())):
             if wear not in different:
                 different.append(wear)
         return tuple(different)
@@ -125,6 +156,16 @@ class CompositeWear:
     ) -> Distribution:
         """Distribution of the wear at contact points: in place."""
         return InPlace()
+
+    @property
+    def has_layers(self) -> bool:
+        """False: no face of several materials is coated."""
+        return False
+
+    @property
+    def worn_through(self) -> CompositeWear:
+        """Wear without layers: the same, as it has none."""
+        return self
 
     @property
     def varies(self) -> bool:
@@ -146,6 +187,7 @@ class CompositeWear:
     def stress_by_part(self, body: str) -> dict[str, str]:
         """Stress that a coefficient multiplies, by part, for the summary."""
         found = {part: wear.per for part, wear in self.parts.items()}
+        found |= {f"{body}.{name}": wear.per for name, (_, wear) in self.regions.items()}
         return {part: per for part, per in found.items() if per is not None}
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal
 
@@ -17,9 +17,11 @@ from ..laws.coefficients import (
     harmonic_mean,
 )
 from ..laws.interfaces import Law
+from ..laws.place import PlaceFunction
 from ..laws.plausible import typical_value
 from ..laws.time_course import TimeFunction
 from .body import WHY, Facing, Material
+from .conditions import Motion
 from .face_wear import Wear
 
 
@@ -74,6 +76,12 @@ class Interface:
     ----------
     faces : tuple of str
         Contact surfaces of body 1 and of body 2.
+    bodies : tuple of int
+        Indices of these bodies in the model.
+    name : str
+        Name for results and messages; empty for the only interface of a pair.
+    motion : Motion
+        Sliding of body 1 over body 2.
     friction : Law
         Coefficient of friction in the direction of sliding.
     friction_factors : Multipliers
@@ -96,6 +104,8 @@ class Interface:
         continued sliding; False if by elastic deflection, as in fretting.
     compliance : float
         Compliance of a soft layer between the faces [m/Pa].
+    fluid_pressure : PlaceFunction or None
+        Pressure of a fluid on both faces, touching or open, besides that of the contact [Pa].
     initial_shape : str or None
         File with an initial worn shape.
     pressure_degree : int, str or None
@@ -105,6 +115,9 @@ class Interface:
     """
 
     faces: tuple[str, str]
+    bodies: tuple[int, int] = (0, 1)
+    name: str = ""
+    motion: Motion = field(default_factory=Motion)
     friction: Law = field(default_factory=lambda: Constant(0.0))
     friction_factors: Multipliers = field(default_factory=Multipliers)
     friction_history: TimeFunction | None = None
@@ -115,9 +128,15 @@ class Interface:
     wear: Mapping[int, Wear] = field(default_factory=dict)
     closes_by_wear: bool = True
     compliance: float = 0.0
+    fluid_pressure: PlaceFunction | None = None
     initial_shape: str | None = None
     pressure_degree: int | Literal["lobatto"] | None = None
     method: ContactMethod = field(default_factory=ContactMethod)
+
+    @property
+    def table(self) -> str:
+        """Table of the case file that describes it, for messages."""
+        return f"contacts.{self.name}" if self.name else "contact"
 
     @cached_property
     def friction_law(self) -> Law:
@@ -143,6 +162,16 @@ class Interface:
             or bool(self.friction_law.variables)
             or any(wear.varies for wear in self.wear.values())
         )
+
+    @property
+    def coated(self) -> bool:
+        """True if a face has layers."""
+        return any(wear.has_layers for wear in self.wear.values())
+
+    @property
+    def worn_through(self) -> Interface:
+        """Interface of faces that have lost all their layers."""
+        return replace(self, wear={index: own.worn_through for index, own in self.wear.items()})
 
     @property
     def wearing_in_place(self) -> dict[int, float]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal, Protocol
+from typing import Literal, Protocol, TypeVar
 
 from ..errors import CaseError
 from ..geometry.mesh.mixed import AnyMesh
@@ -13,11 +13,13 @@ from ..laws.time_course import LoadHistory, TimeFunction
 from .body import Body, Material
 from .conditions import Heat, Holder, Motion
 from .interface import Interface
+from .tie import Tie, glued_bodies
 
 Solver = Literal["auto", "direct", "multigrid"]
 """Linear solver of bodies in space."""
 Zone = tuple[float, float]
 """Range of x [m]."""
+Item = TypeVar("Item", Interface, Holder)
 
 
 class MeshSource(Protocol):
@@ -94,7 +96,8 @@ class Model:
     holders : tuple of Holder
     meshes : MeshSource
     discretisation : Discretisation
-    motion : Motion
+    ties : tuple of Tie
+        Glued faces.
     heat : Heat or None
         None: isothermal.
     thickness : float or None
@@ -108,7 +111,7 @@ class Model:
     Raises
     ------
     CaseError
-        If it has more than one pair of bodies.
+        If interfaces or holders name bodies that it does not have, or a body has two holders.
     """
 
     kinematics: Literal["axisymmetric", "plane-strain", "plane-stress", "3d"]
@@ -117,30 +120,91 @@ class Model:
     holders: tuple[Holder, ...]
     meshes: MeshSource
     discretisation: Discretisation
-    motion: Motion = field(default_factory=Motion)
     heat: Heat | None = None
     thickness: float | None = None
     sector: float = 1.0
     symmetry: tuple[str, ...] = ()
     title: str = ""
+    ties: tuple[Tie, ...] = ()
 
     def __post_init__(self):
-        counts = len(self.bodies), len(self.interfaces), len(self.holders)
-        if counts != (2, 1, 1):
+        if not self.interfaces or not self.holders:
+            raise CaseError("model: needs at least one interface and one holder")
+        held = [index for holder in self.holders for index in holder.bodies]
+        named = [*held, *(index for interface in self.interfaces for index in interface.bodies)]
+        if len(set(held)) < len(held) or max(named) >= len(self.bodies):
             raise CaseError(
-                "model: needs two bodies, one interface and one holder; found {} bodies, {} "
-                "interfaces and {} holders".format(*counts)
+                f"model: interfaces and holders refer to the bodies {sorted(set(named))} of "
+                f"{len(self.bodies)}, and each may have one holder only"
             )
+
+        for tie in self.ties:
+            if len({self.bodies[index].ring for index in tie.bodies}) > 1:
+                raise CaseError(
+                    f"model: the tie {tie.name!r} joins a whole ring and a sector; glued bodies "
+                    "must both be whole rings, or both cover the sector"
+                )
+
+    @property
+    def is_pair(self) -> bool:
+        """True for two bodies with one interface without a name, of which the first one is held."""
+        alone = len(self.interfaces) == len(self.holders) == 1
+        return len(self.bodies) == 2 and alone and not self.interfaces[0].name
+
+    @cached_property
+    def groups(self) -> list[tuple[int, ...]]:
+        """Indices of the bodies of each group: of one body, or of those glued to each other."""
+        return glued_bodies(len(self.bodies), self.ties)
 
     @cached_property
     def interface(self) -> Interface:
-        """The interface of the pair."""
-        return self.interfaces[0]
+        """The interface of a pair.
+
+        Raises
+        ------
+        CaseError
+            If there are several.
+        """
+        return self._only(self.interfaces, "interface")
 
     @cached_property
     def holder(self) -> Holder:
-        """The holder of body 1."""
-        return self.holders[0]
+        """The holder of body 1 of a pair.
+
+        Raises
+        ------
+        CaseError
+            If there are several.
+        """
+        return self._only(self.holders, "holder")
+
+    @property
+    def motion(self) -> Motion:
+        """Sliding of body 1 of a pair over body 2."""
+        return self.interface.motion
+
+    @property
+    def coated(self) -> bool:
+        """True if a face has layers."""
+        return any(interface.coated for interface in self.interfaces)
+
+    @property
+    def worn_through(self) -> Model:
+        """Model of faces that have lost all their layers."""
+        return replace(self, interfaces=tuple(one.worn_through for one in self.interfaces))
+
+    def faster(self, factor: float) -> Model:
+        """Model with all sliding faster by a factor."""
+        moved = [replace(one, motion=one.motion.faster(factor)) for one in self.interfaces]
+        return replace(self, interfaces=tuple(moved))
+
+    def _only(self, each: tuple[Item, ...], kind: str) -> Item:
+        if len(each) > 1:
+            raise CaseError(
+                f"model: has {len(each)} {kind}s; this is supported for two bodies with one "
+                "interface and one holder only"
+            )
+        return each[0]
 
     @cached_property
     def materials(self) -> Mapping[str, Material]:
@@ -157,12 +221,12 @@ class Model:
         normal to the axis of rotation, cuts no sector: the shear is symmetric about it.
         """
         cut = self.symmetry or any(body.rollers for body in self.bodies)
-        return bool(cut) and self.kinematics == "3d" and self.motion.center is not None
+        turns = any(interface.motion.center is not None for interface in self.interfaces)
+        return bool(cut) and self.kinematics == "3d" and turns
 
-    @property
-    def pressure_degree(self) -> int:
-        """Degree of the pressure space, by default one below that of the displacement."""
-        own, degree = self.interface.pressure_degree, self.discretisation.degree
+    def pressure_degree(self, interface: Interface) -> int:
+        """Degree of a pressure space, by default one below that of the displacement."""
+        own, degree = interface.pressure_degree, self.discretisation.degree
         if own == "lobatto":  # as many functions per facet as the displacement
             return degree
         return own or max(degree - 1, 1)
@@ -174,15 +238,40 @@ class Model:
 
     @property
     def expected_zone(self) -> Zone | None:
-        """Estimate of the contact zone; None where the mesh has no zone."""
+        """Estimate of the contact zone; None where the mesh has no zone, as of several pairs."""
+        if not self.is_pair:
+            return None
         return self.meshes.expected_zone(self.holder.force, self.holder.approach, self.modulus)
 
     @property
     def histories(self) -> list[LoadHistory | TimeFunction]:
         """Functions of time of loads, speed, friction and temperatures."""
         heat = () if self.heat is None else self.heat.histories
-        given = self.holder.history, self.motion.history, self.interface.friction_history, *heat
-        return [history for history in given if history is not None]
+        given: list[LoadHistory | TimeFunction | None] = [h.history for h in self.holders]
+        for interface in self.interfaces:
+            given += [interface.motion.history, interface.friction_history]
+        return [history for history in (*given, *heat) if history is not None]
+
+    @property
+    def method(self) -> str:
+        """Contact method, of all interfaces.
+
+        Raises
+        ------
+        CaseError
+            If several interfaces have another one than the condensed method.
+        """
+        names = {interface.method.name for interface in self.interfaces}
+        if len(self.interfaces) > 1 and names != {"condensed"}:
+            raise CaseError(
+                f"model: several interfaces need the condensed method; found {sorted(names)}"
+            )
+        return self.interfaces[0].method.name
+
+    @property
+    def wears(self) -> bool:
+        """True if any face has a wear law."""
+        return any(interface.wear for interface in self.interfaces)
 
     def ring(self, surface: str) -> float:
         """Area of a surface relative to that in the model, see `Body.ring`."""

@@ -17,9 +17,12 @@ class EvenTrack:
     ----------
     length : float
         [m]
+    name : str
+        Name of a track that passes several interfaces, each of which wears all of it.
     """
 
     length: float
+    name: str = ""
 
     def distribution(
         self, points: np.ndarray, weights: np.ndarray, thickness: float

@@ -9,6 +9,7 @@ from math import pi
 from typing import Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from ..balances import BALANCES, holds
@@ -87,6 +88,21 @@ class ConsoleProgress:
 
 
 _PLAIN: dict[str, Any] = {"box": None, "padding": (0, 2, 0, 0)}
+_OF_PARTS = {
+    "contacts": (
+        "normal_force_N",
+        "fluid_force_N",
+        "friction_torque_Nm",
+        "max_pressure_Pa",
+        "shape_range_m",
+        "friction_power_W",
+        "wear_volume_1_m3",
+        "wear_volume_2_m3",
+    ),
+    "holders": ("approach_m", "rigid_wear_velocity_m_per_s"),
+    "bodies": ("contact_heat_W", "wear_volume_m3"),
+}
+"""Numbers of the parts of a model of several bodies that are printed."""
 _SMALLEST_SHOWN = 1e-3
 """Smallest error estimate shown as a number [%]; errors of quadrature are far below."""
 
@@ -97,11 +113,25 @@ def print_summary(console: Console, summary: dict, seconds: dict[str, float]) ->
     for label, value in _highlights(summary):
         numbers.add_row(label, value)
     console.print(numbers)
+    for kind in ("contacts", "holders", "bodies"):
+        if kind in summary:
+            console.print(_side_by_side(kind, summary[kind]))
     times = _table("phase", "seconds")
     for name, value in seconds.items():
         times.add_row(PHASES.get(name, name), f"{value:.3f}")
     times.add_row("total", f"{sum(seconds.values()):.3f}")
     console.print(times)
+
+
+def _side_by_side(kind: str, parts: dict[str, dict[str, Any]]) -> Table:
+    """Main numbers of the contacts, holders or bodies of a model, a row for each of them."""
+    keys = [k for k in _OF_PARTS[kind] if any(part.get(k) for part in parts.values())]
+    quantities = [of_key(key) for key in keys]
+    table = _table(kind, *(escape(f"{q.label} [{q.unit}]") for q in quantities))
+    for name, part in parts.items():
+        values = zip(quantities, (part.get(key) for key in keys), strict=True)
+        table.add_row(name, *("" if v is None else f"{q.drawn(v):.5g}" for q, v in values))
+    return table
 
 
 def _table(label: str, *columns: str) -> Table:
@@ -165,12 +195,14 @@ def _highlights(summary: dict):
         if exists(key) and not holds(summary[key]):
             yield f"NOT BALANCED: {balance.name}", f"relative error {summary[key]:.1e}"
     yield from row("normal_force_N", unit="kN")
-    low, high = (
-        of_key("max_pressure_Pa").drawn(summary[f"{m}_pressure_Pa"]) for m in ("min", "max")
-    )
-    yield "pressure", f"{low:.5g} … {high:.5g} MPa{_margin(summary, 'pressure', 'max_pressure')}"
+    if exists("min_pressure_Pa"):
+        low, high = (
+            of_key("max_pressure_Pa").drawn(summary[f"{m}_pressure_Pa"]) for m in ("min", "max")
+        )
+        margin = _margin(summary, "pressure", "max_pressure")
+        yield "pressure", f"{low:.5g} … {high:.5g} MPa{margin}"
     yield from row("approach_m", 5, "approach of the holder towards body 2")
-    if summary["shape_range_m"] > 0:
+    if summary.get("shape_range_m", 0.0) > 0:
         yield from row("shape_range_m", 5, more=_margin(summary, "shape"))
     if exists("max_temperature_K"):
         yield from row("max_temperature_K", 5, more=_margin(summary, "temperature"))
@@ -193,9 +225,17 @@ def _highlights(summary: dict):
         yield "time, steps", f"{summary['time_s']:.6g} s, {summary['steps']}"
     if summary.get("cycles"):
         yield "cycles", f"{summary['cycles']:.6g}"
-    if max(summary["wear_volume_1_m3"], summary["wear_volume_2_m3"]) > 0:
+    if max(summary.get(f"wear_volume_{side}_m3", 0.0) for side in (1, 2)) > 0:
         volumes = (value for body in (1, 2) for _, value in row(f"wear_volume_{body}_m3", 5))
         yield "worn volume, body 1 and 2", " and ".join(volumes)
+    for body in (1, 2):
+        distance = summary.get(f"worn_through_distance_{body}_m")
+        yield from row(
+            f"worn_through_time_{body}_s",
+            5,
+            f"coating worn through, body {body}",
+            more="" if distance is None else f", {distance:.5g} m",
+        )
     for which, label in (("", ""), ("_with_wear", " with wear")):
         if exists(f"critical_speed_factor{which}"):
             yield f"critical speed{label}", _critical(summary, which)

@@ -10,17 +10,18 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..results import TABLES
 
 PICTURES = {
     "bodies": "Von Mises stress of the bodies, and their temperature if the case has heat.",
     "deformed": "Deformed bodies, displacements magnified.",
-    "faces": "Contact face of body 2 in space, without body 1, and the worn shape magnified.",
+    "faces": "Contact face of the second body in space, and the worn shape magnified.",
     "interface": "Pressure, temperatures and shape of the worn face along the contact.",
     "profile": "Worn shape.",
     "wear": "Pressure and wear depth along the contact at the output times and at the end.",
+    "coating": "Thickness left of the coatings at the output times and at the end.",
     "track": "Wear depths of both bodies along x, body 1 in the middle of its stroke.",
     "history": "Largest pressure and worn volume over time.",
     "heat": "Surface temperatures of both bodies, friction power and largest pressure over time.",
@@ -31,6 +32,10 @@ PICTURES = {
 }
 """Pictures of a run with their captions, in the order of the report."""
 
+_BY_CONTACT = "interface", "profile", "wear", "coating", "faces"
+"""Pictures by contact in a model of several bodies."""
+_AT = "_at_"
+"""Between the name of a contact and the output time in the names of files."""
 FRAMES = "frames"
 _REPORT_TAG = re.compile(rb'<meta name="generator" content="thermowear"')
 _REPORT_HEAD = 1000  # bytes at the beginning of a report that contain its generator tag
@@ -40,26 +45,82 @@ _OTHERS = {
 }
 
 
-def name_at(stem: str, time: float | None) -> str:
+def picture(name: str, contact: str = "") -> str:
+    """File name of a picture, of one contact in a model of several bodies."""
+    return f"{name}_{contact}.png" if contact else f"{name}.png"
+
+
+class TableFile(NamedTuple):
+    """Table of a results folder, by the name of its file.
+
+    Attributes
+    ----------
+    stem : str
+        Of a table; the whole name without ``.csv`` for a file of another name.
+    contact : str
+        Contact of a model of several bodies; empty in others.
+    time : float or None
+        Output time; None at the end [s].
+    """
+
+    stem: str
+    contact: str = ""
+    time: float | None = None
+
+
+def name_at(stem: str, time: float | None, contact: str = "") -> str:
     """File name of a table at an output time, or at the end."""
+    if contact:
+        stem = f"{stem}_{contact}"
+        return f"{stem}.csv" if time is None else f"{stem}{_AT}{time:g}.csv"
     return f"{stem}.csv" if time is None else f"{stem}_{time:g}.csv"
 
 
-def stem_and_time(name: str) -> tuple[str, float | None]:
-    """Stem and output time of the file name of a table; without a time the whole stem and None."""
+def table_file(name: str) -> TableFile:
+    """Table, contact and output time of a file name."""
     whole = name.removesuffix(".csv")
-    stem, _, text = whole.partition("_")
+    stem, _, rest = whole.partition("_")
+    if stem not in TABLES or not rest:
+        return TableFile(whole)
+    time = _number(rest)
+    if time is not None:
+        return TableFile(stem, "", time)
+    contact, _, text = rest.rpartition(_AT)
+    time = _number(text) if contact else None
+    return TableFile(stem, rest) if time is None else TableFile(stem, contact, time)
+
+
+def _number(text: str) -> float | None:
     try:
-        time = float(text)
+        value = float(text)
     except ValueError:
-        return whole, None
-    return (stem, time) if math.isfinite(time) else (whole, None)
+        return None
+    return value if math.isfinite(value) else None
 
 
-def states(folder: Path, stem: str) -> dict[float, Path]:
+def states(folder: Path, stem: str, contact: str = "") -> dict[float, Path]:
     """Files of a table at the output times, in the order of time."""
-    found = {stem_and_time(path.name)[1]: path for path in folder.glob(f"{stem}_*.csv")}
-    return {time: found[time] for time in sorted(t for t in found if t is not None)}
+    found = ((table_file(path.name), path) for path in folder.glob(f"{stem}_*.csv"))
+    times = {file.time: path for file, path in found if file.contact == contact}
+    return {time: times[time] for time in sorted(t for t in times if t is not None)}
+
+
+def contacts_of(folder: Path) -> list[str]:
+    """Names of the contacts of the run in a results folder; one empty name for a pair."""
+    found = (read_object(folder / "run.json") or {}).get("contacts")
+    return [str(name) for name in found] if isinstance(found, list) and found else [""]
+
+
+def bodies_of(folder: Path, contact: str = "") -> tuple[str, str]:
+    """Names of the first and the second body of a contact, or of those of all contacts, for labels.
+
+    Those of a pair are "body 1" and "body 2".
+    """
+    contacts = read_summary(folder).get("contacts", {})
+    if not contacts:
+        return "body 1", "body 2"
+    first, second = contacts.get(contact, {}).get("between", ("first bodies", "second bodies"))
+    return first, second
 
 
 def is_ours(path: Path) -> bool:
@@ -67,9 +128,13 @@ def is_ours(path: Path) -> bool:
     name = final_name(path)
     if name == "report.html":
         return is_report(path)
-    stem, time = stem_and_time(name)
-    table = TABLES.get(stem) if name == name_at(stem, time) else None
-    return name in _OTHERS or (table is not None and (time is None or table.at_times))
+    contacts = contacts_of(path.parent)
+    pictures = {picture(each, contact) for each in _BY_CONTACT for contact in contacts}
+    stem, contact, time = table_file(name)
+    known = name == name_at(stem, time, contact) and contact in ("", *contacts)
+    table = TABLES.get(stem) if known else None
+    at_time = table is not None and (time is None or table.at_times)
+    return name in _OTHERS or name in pictures or at_time
 
 
 def is_report(path: Path) -> bool:

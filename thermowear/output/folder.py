@@ -8,7 +8,7 @@ import math
 import os
 import platform
 import weakref
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from functools import cache
 from importlib import metadata
@@ -19,6 +19,7 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
+from ..results.points import part_of
 from ..results.quantity import TABLES, table_of
 from .checkpoint import CHECKPOINT, write_checkpoint
 from .files import FRAMES, final_name, is_ours, name_at, write_text
@@ -72,7 +73,9 @@ class ResultsFolder:
 
     def __init__(self, path: Path, tables: dict, ranks: int, overwrite: bool):
         self.path = path
-        self._run = run_started(ranks=ranks)
+        contacts = tables.get("contacts", {}).items()
+        names = [name for name, table in contacts if not table.get("tie")]
+        self._run = run_started(ranks=ranks, **({"contacts": names} if names else {}))
         self._rows: dict[str, RowWriter] = {}
         self._made = not os.path.exists(path)  # Path.exists raises an error for invalid names
         try:
@@ -121,9 +124,19 @@ class ResultsFolder:
         """Write a state from which the run can be resumed."""
         write_checkpoint(self.path / CHECKPOINT, about, arrays)
 
-    def output(self, time: float, *tables) -> None:
-        """Write tables of points, such as the interface, at an output time."""
-        for points in tables:
+    def output(
+        self,
+        time: float,
+        interface,
+        friction=None,
+        track=None,
+        contacts: Mapping[str, slice] | None = None,
+    ) -> None:
+        """Write tables of points at an output time; the interface by contact if there are any."""
+        for name, own in (contacts or {}).items():
+            file = name_at(table_of(interface).stem, time, name)
+            write_points(self.path / file, part_of(interface, own))
+        for points in (None if contacts else interface, friction, track):
             if points is not None:
                 write_points(self.path / name_at(table_of(points).stem, time), points)
 
@@ -134,7 +147,7 @@ class ResultsFolder:
     def finish(self, result, seconds: dict[str, float]) -> None:
         """Write points, fields and summary of a `thermowear.results.Result`."""
         for stem, content in result.tables().items():
-            if not TABLES[stem].grows:
+            if not table_of(content).grows:
                 write_points(self.path / name_at(stem, None), content)
         if result.fields is not None:
             write_fields(self.path / "fields.vtu", result.fields)

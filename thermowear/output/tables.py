@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from ..results.quantity import TABLES, Quantity, Table, table_of, unknown
-from .files import atomic_write, model_of, stem_and_time
+from .files import atomic_write, bodies_of, model_of, table_file
 
 _NUMBER = "{:.15g}"
 
@@ -32,7 +32,7 @@ class TableColumns(dict[str, np.ndarray]):
 
     def __init__(self, path: Path, columns: dict[str, np.ndarray]):
         self._path = path
-        table = TABLES.get(stem_and_time(path.name)[0])
+        table = TABLES.get(table_file(path.name).stem)
         self._known = {} if table is None else table.columns
         names = {quantity.header: name for name, quantity in self._known.items()}
         super().__init__((names.get(header, header), column) for header, column in columns.items())
@@ -42,10 +42,12 @@ class TableColumns(dict[str, np.ndarray]):
 
     @cached_property
     def quantities(self) -> dict[str, Quantity]:
-        """Quantities of the columns, labelled for the kinematic model of the run."""
+        """Quantities of the columns, labelled for the kinematic model and the bodies of the run."""
         others = {name: unknown(name, self[name]) for name in self if name not in self._known}
-        model = model_of(self._path.parent)
-        return {name: q.in_model(model) for name, q in (self._known | others).items()}
+        folder, contact = self._path.parent, table_file(self._path.name).contact
+        model, bodies = model_of(folder), bodies_of(folder, contact)
+        every = self._known | others
+        return {name: q.in_model(model).of_bodies(bodies) for name, q in every.items()}
 
     def drawn(self, name: str) -> np.ndarray:
         """Column in the unit of plots."""
@@ -86,8 +88,11 @@ def read(path: Path) -> TableColumns:
 
 
 def write_points(path: Path, points) -> None:
-    """Write points, such as `thermowear.results.InterfaceFields`, one per row."""
-    table = table_of(points)
+    """Write points, such as `thermowear.results.InterfaceFields`, one per row.
+
+    Optional columns without values are left out.
+    """
+    table = table_of(points).given(points)
     _write_table(path, table, zip(*table.values(points), strict=True))
 
 

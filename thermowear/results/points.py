@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import TypeVar
+
 import numpy as np
 
-from .quantity import as_in, column, table
+from .quantity import as_in, column, table, table_of
 
 
 @table(
     "interface",
     "Contact at the end",
     "one row per contact point: position, area, pressure, gap, shape, wear depths and rates, "
-    "temperatures, heat fluxes",
+    "temperatures, heat fluxes, coating left",
     at_times=True,
 )
 class InterfaceFields:
     """State of the interface, one entry per contact point.
 
-    Without ``[heat]`` temperatures and fluxes are NaN. Temperatures are absolute.
+    Without ``[heat]`` temperatures and fluxes are NaN, without layers what is left of them.
+    Temperatures are absolute.
     """
 
     x: np.ndarray = column("x", "m", "mm", "r in axisymmetric models")
@@ -38,6 +42,19 @@ class InterfaceFields:
     temperature_2: np.ndarray = column("temperature, body 2", "K", "°C")
     heat_flux_1: np.ndarray = column("heat flux, body 1", "W/m²", "kW/m²", "into the body")
     heat_flux_2: np.ndarray = column("heat flux, body 2", "W/m²", "kW/m²", "into the body")
+    coating_left_1: np.ndarray = column(
+        "coating left, body 1", "m", "µm", "of all layers; only of coated faces", optional=True
+    )
+    coating_left_2: np.ndarray = column(
+        "coating left, body 2", "m", "µm", "of all layers; only of coated faces", optional=True
+    )
+    fluid_pressure: np.ndarray = column(
+        "fluid pressure",
+        "Pa",
+        "MPa",
+        "besides the contact pressure; only where it is given",
+        optional=True,
+    )
 
 
 @table(
@@ -125,3 +142,12 @@ class Modes:
     s: np.ndarray = as_in(InterfaceFields)
     pressure: np.ndarray = column("pressure perturbation", meaning="largest value 1")
     pressure_imaginary: np.ndarray = column("perturbation, imaginary part")
+
+
+Points = TypeVar("Points")
+
+
+def part_of(points: Points, chosen: slice) -> Points:
+    """Range of the points of a table."""
+    columns = {name: getattr(points, name)[chosen] for name in table_of(points).columns}
+    return replace(points, **columns)  # type: ignore[type-var]

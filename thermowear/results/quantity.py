@@ -11,7 +11,7 @@ and reports engineering units.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, TypeVar, dataclass_transform
 
@@ -44,6 +44,7 @@ _IN_KEYS = {
 """SI units by their spelling in the keys of results."""
 _SPELLED = {unit: spelling for spelling, unit in _IN_KEYS.items()}
 _AXISYMMETRIC = {"x": "r", "y": "z"}
+_OF_A_BODY = re.compile(r"_[12](_|$)")
 
 
 def key(name: str, si: str) -> str:
@@ -89,6 +90,8 @@ class Quantity:
         Unit of plots and tables, "1" for plain numbers.
     meaning : str
         Definition, sign and reference, where the label does not tell.
+    optional : bool
+        True for a column of points that is left out where it has no values.
     """
 
     header: str
@@ -96,6 +99,7 @@ class Quantity:
     si: str
     unit: str
     meaning: str = ""
+    optional: bool = False
 
     @property
     def axis(self) -> str:
@@ -109,8 +113,19 @@ class Quantity:
 
     @property
     def of_both(self) -> Quantity:
-        """Quantity of both bodies in one plot: the label without the number of the body."""
-        return replace(self, label=re.sub(", body [12]$", "", self.label))
+        """Quantity of both bodies in one plot: the label without the body."""
+        return replace(self, label=self.label.rpartition(", ")[0]) if self.body else self
+
+    @property
+    def body(self) -> str:
+        """Body that a quantity of one of both belongs to, as in its label; empty for others."""
+        of_one = _OF_A_BODY.search(self.header) is not None
+        return self.label.rpartition(", ")[2] if of_one and ", " in self.label else ""
+
+    def of_bodies(self, names: Sequence[str]) -> Quantity:
+        """Quantity whose label calls the first and the second body by their names."""
+        label = re.sub(r", body ([12])$", lambda found: f", {names[int(found[1]) - 1]}", self.label)
+        return replace(self, label=label)
 
     def drawn(self, values):
         """Convert SI values to the unit of plots."""
@@ -171,15 +186,28 @@ class Table:
     at_times: bool = False
     grows: bool = False
 
+    def given(self, points) -> Table:
+        """Table without the optional columns that are NaN at all points."""
+        absent = {
+            name
+            for name, quantity in self.columns.items()
+            if quantity.optional and np.isnan(getattr(points, name)).all()
+        }
+        kept = {name: each for name, each in self.columns.items() if name not in absent}
+        return replace(self, columns=kept)
+
     def values(self, source) -> list:
         """Columns of points, or cells of a row, in the order of the file."""
         return [getattr(source, name) for name in self.columns]
 
     def arrays(self, source) -> dict[str, np.ndarray]:
         """Columns of points, or of a list of rows, by their headers."""
-        is_rows = isinstance(source, list)
-        columns = zip(*map(self.values, source), strict=True) if is_rows else self.values(source)
-        headers = (quantity.header for quantity in self.columns.values())
+        if isinstance(source, list):
+            table, columns = self, list(zip(*map(self.values, source), strict=True))
+        else:
+            table = self.given(source)
+            columns = table.values(source)
+        headers = (quantity.header for quantity in table.columns.values())
         return dict(zip(headers, map(np.asarray, columns), strict=True))
 
 
@@ -187,7 +215,14 @@ TABLES: dict[str, Table] = {}
 """All tables by the stems of their files."""
 
 
-def column(label: str, si: str = "", unit: str = "", meaning: str = "", header: str = "") -> Any:
+def column(
+    label: str,
+    si: str = "",
+    unit: str = "",
+    meaning: str = "",
+    header: str = "",
+    optional: bool = False,
+) -> Any:
     """Field of a table that declares a quantity.
 
     Parameters
@@ -200,8 +235,11 @@ def column(label: str, si: str = "", unit: str = "", meaning: str = "", header: 
     meaning : str
     header : str
         Name in files if it differs from the name of the field.
+    optional : bool
+        Leave the column out where it has no values.
     """
-    return field(metadata={"quantity": Quantity(header, label, si, unit or si or "1", meaning)})
+    quantity = Quantity(header, label, si, unit or si or "1", meaning, optional)
+    return field(metadata={"quantity": quantity})
 
 
 def as_in(kind: type) -> Any:

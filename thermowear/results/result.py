@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack
-from .quantity import TABLES, from_key, table_of
-from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
+from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack, part_of
+from .quantity import from_key, table_of
+from .rows import ContactRow, CycleRow, HeatRow, HistoryRow, LoadRow
 
 
 @dataclass(frozen=True)
@@ -157,6 +157,10 @@ class Result:
         Exception that stopped the run early.
     fields : BodyFields, MixedFields or None
         Fields of the bodies, on rank 0 only.
+    contacts : dict of str to slice
+        Ranges of the points of each contact of several bodies, by name; empty for a pair.
+    contact_history : list of ContactRow
+        Contacts of several bodies at the steps of a transient analysis.
     """
 
     interface: InterfaceFields
@@ -170,15 +174,26 @@ class Result:
     modes: Modes | None = None
     stopped: BaseException | None = None
     fields: AnyFields | None = None
+    contacts: dict[str, slice] = field(default_factory=dict)
+    contact_history: list[ContactRow] = field(default_factory=list)
 
     def tables(self) -> dict[str, Any]:
-        """Tables by the names of their files without ``.csv``: points at the end, or rows."""
-        found: list = [self.interface, self.profile, self.history, self.heat, self.modes]
+        """Tables by the names of their files without ``.csv``: points at the end, or rows.
+
+        Those of the points of several contacts end in the name of the contact.
+        """
+        of_contacts = {
+            f"{table_of(points).stem}_{name}": part_of(points, own)
+            for points in (self.interface, self.profile)
+            for name, own in self.contacts.items()
+        }
+        both = [] if self.contacts else [self.interface, self.profile]
+        found: list = [*both, self.history, self.heat, self.contact_history, self.modes]
         if self.friction is not None:
             found += [self.friction.last, self.friction.rows, self.friction.cycles]
         if self.track is not None:
             found.append(self.track.last)
-        return {table_of(content).stem: content for content in found if content}
+        return of_contacts | {table_of(content).stem: content for content in found if content}
 
     def columns(self, name: str) -> dict[str, np.ndarray]:
         """Columns of a table in SI by their names in files, as `pandas.DataFrame` takes them.
@@ -188,4 +203,5 @@ class Result:
         name : str
             Name of the file without ``.csv``, such as "interface" or "history".
         """
-        return TABLES[name].arrays(self.tables()[name])
+        content = self.tables()[name]
+        return table_of(content).arrays(content)

@@ -52,6 +52,31 @@ class HeatRow:
 
 
 @table(
+    "contacts",
+    "Contacts, one row per contact and step",
+    "several bodies: one row per time step and contact with its force, pressure, worn volumes and "
+    "temperatures",
+    grows=True,
+)
+class ContactRow:
+    """Contact of a model of several bodies at the end of a step; bodies are those of the contact.
+
+    Contacts are numbered in the order of the case, as listed in ``run.json``.
+    """
+
+    time: float = as_in(HistoryRow)
+    contact: int = column("contact", meaning="number, in the order of the case")
+    normal_force: float = as_in(HeatRow)
+    friction_power: float = as_in(HeatRow)
+    max_pressure: float = as_in(HistoryRow)
+    contact_area: float = as_in(HistoryRow)
+    wear_volume_1: float = as_in(HistoryRow)
+    wear_volume_2: float = as_in(HistoryRow)
+    max_temperature_1: float = as_in(HeatRow)
+    max_temperature_2: float = as_in(HeatRow)
+
+
+@table(
     "cycles",
     "Cycles, one row per computed cycle",
     "fretting with wear: one row per computed cycle, with length and error of the cycle jump",

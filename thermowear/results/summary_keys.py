@@ -13,6 +13,7 @@ OTHER = "Other"
 GROUPS: dict[str, tuple[Quantity, ...]] = {
     "Loads and forces": (
         _heat["normal_force"],
+        from_key("fluid_force_N", meaning="of the fluid between the faces, opening them"),
         from_key("friction", "coefficient of friction"),
         from_key("friction_force_N"),
         from_key("friction_torque_Nm"),
@@ -49,6 +50,26 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
         from_key("wear_dissipation_W", "wear dissipation power"),
         _history["wear_volume_1"],
         _history["wear_volume_2"],
+        *(
+            from_key(
+                f"layer_volumes_{body}_m3",
+                f"worn volumes of the layers, body {body}",
+                "mm³",
+                "from the surface down, the substrate last",
+            )
+            for body in (1, 2)
+        ),
+        *(
+            from_key(
+                f"worn_through_{key}",
+                f"{what} at which the first point has lost its coating, body {body}",
+            )
+            for body in (1, 2)
+            for what, key in (
+                ("time", f"time_{body}_s"),
+                ("sliding distance", f"distance_{body}_m"),
+            )
+        ),
         from_key(
             "wear_coefficient_per", meaning="of each body or part: friction-stress or pressure"
         ),

@@ -3,6 +3,7 @@
 from .body import BodySurface, MeshBody
 from .conversion import (
     Heat,
+    LayeredWear,
     LoadHistory,
     Material,
     PowerWear,
@@ -10,9 +11,11 @@ from .conversion import (
     TimeHistory,
 )
 from .face_pair import FacePair
+from .face_tie import FaceTie
 from .holding import Rotation, SurfaceHolder, Translation
 from .march import MarchState
 from .scripted_model import ScriptedModel
 from .solution import ModelSolution, PointValues
 
 Body, Interface, Holder, Model = MeshBody, FacePair, SurfaceHolder, ScriptedModel
+Tie = FaceTie

@@ -11,10 +11,11 @@ from typing import Any, Literal
 from ..case.values import units
 from ..case.values.units import expression, in_python
 from ..errors import CaseError
-from ..laws import power_wear, time_course
+from ..laws import layered_wear, power_wear, time_course
 from ..laws.coefficients import Constant, Table1D
 from ..laws.formulas import FormulaLaw, FormulaWear, interface_law, wear_rate
 from ..laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
+from ..laws.place import PLACE, PlaceFunction
 from ..laws.plausible import require_interface_law
 from ..laws.time_course import TimeFunction
 from ..model import body, conditions, interface
@@ -92,6 +93,16 @@ def rate_law(given: Any, name: str) -> Law:
         if isinstance(given, str):
             given = FormulaWear(expression(given, "m/s", WEAR_VARIABLES), name)
         return wear_rate(given)
+
+
+def place_function(given: Any, name: str) -> PlaceFunction | None:
+    """Pressure from a number, an expression with units, or a function of x, y, z and r."""
+    with _faults_of(name):
+        if isinstance(given, str):
+            return PlaceFunction(expression(given, "Pa", tuple(PLACE)))
+        if given is None:
+            return None
+        return PlaceFunction.of(given if callable(given) else number(given, name, least=0.0))
 
 
 @contextmanager
@@ -237,6 +248,36 @@ def PowerWear(coefficient: Any, b: float = 1.0, a: float = 1.0) -> power_wear.Po
     unit = ("" if a == 1 else f"(m/s)^{1 - a:.12g} ") + f"1/Pa^{b:.12g}"
     kind = units.quantity(unit, f"1e-13 {unit}", gt=0)
     return power_wear.PowerWear(in_python(kind, coefficient, f"{name}.coefficient"), b, a)
+
+
+def LayeredWear(
+    thickness: Sequence[Any], laws: Sequence[Any], substrate: Any
+) -> layered_wear.LayeredWear:
+    """Wear of a face with layers, see `laws.layered_wear.LayeredWear`.
+
+    Parameters
+    ----------
+    thickness : sequence
+        Thickness of each layer, from the surface down [m].
+    laws : sequence of (str, Law or callable)
+        Wear rate of each layer.
+    substrate : str, Law or callable
+        Wear rate below all layers.
+
+    Raises
+    ------
+    CaseError
+        If there is no layer, a thickness is not greater than 0, or a law is invalid.
+    """
+    name = "LayeredWear"
+    found = each_quantity(units.Length, thickness, f"{name}.thickness")
+    if not found or len(found) != len(laws):
+        raise CaseError(f"{name}: has {len(laws)} laws for {len(found)} layers")
+    each = [rate_law(law, f"{name}.laws") for law in laws]
+    if any(isinstance(law, layered_wear.LayeredWear) for law in (*each, substrate)):
+        raise CaseError(f"{name}: a layer cannot have layers; give all of them in one list")
+    each.append(rate_law(substrate, f"{name}.substrate"))
+    return layered_wear.LayeredWear(found, tuple(each))
 
 
 def PressureConductance(coefficient: Any) -> interface.HardnessConductance:

@@ -1,4 +1,4 @@
-"""Rigid holder of a surface of a body, and motion of one body relative to the other."""
+"""Rigid holders of surfaces of bodies, and motions of bodies relative to each other."""
 
 from __future__ import annotations
 
@@ -6,17 +6,19 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, get_args
 
+import numpy as np
+
 from ..case.tables.conditions import FreeMotion
 from ..case.values import units
 from ..case.values.units import in_python
 from ..errors import CaseError
 from ..laws.time_course import LoadHistory, TimeFunction
 from ..model.conditions import Holder, Motion
-from .body import BodySurface, require_surface
+from .body import BodySurface, MeshBody, require_surface
 from .conversion import by_surface, each_quantity, quantities
 
 _LOADS = {
-    "force": units.Force,
+    "force": units.LeastForce,
     "approach": units.Length,
     "tangential_force": units.SignedForce,
     "closing_moment": units.SignedMoment,
@@ -28,11 +30,10 @@ _ON_SURFACES = {"surface_forces": units.Force, "surface_pressures": units.Pressu
 class SurfaceHolder:
     """Rigid holder of a surface, see `model.conditions.Holder`.
 
-    It presses along -y in a section and along -z in space.
-
     Attributes
     ----------
-    surface : BodySurface
+    surface : BodySurface or sequence of BodySurface
+        Surfaces of several bodies move as one.
     free : sequence of str
     force, approach, tangential_force, moments, closing_moment
         Quantities; the moments about x, y and z.
@@ -40,9 +41,13 @@ class SurfaceHolder:
         By default the origin, and the pivot [m].
     history : LoadHistory or None
     surface_forces, surface_pressures : mapping of BodySurface to quantity
+    direction : sequence of float or None
+        Direction along which it presses, the motion "z"; by default -y in a section, -z in space.
+    name : str
+        By default that of the first body.
     """
 
-    surface: BodySurface
+    surface: BodySurface | Sequence[BodySurface]
     free: Sequence[str] = ("z",)
     force: Any = None
     approach: Any = None
@@ -54,20 +59,49 @@ class SurfaceHolder:
     history: LoadHistory | None = None
     surface_forces: Mapping[BodySurface, Any] = field(default_factory=dict)
     surface_pressures: Mapping[BodySurface, Any] = field(default_factory=dict)
+    direction: Sequence[float] | None = None
+    name: str = ""
 
     def __post_init__(self):
-        require_surface(self.surface, "Holder")
+        for surface in self.surfaces:
+            require_surface(surface, "Holder")
         for name in self.free:
             if name not in get_args(FreeMotion):
                 known = ", ".join(get_args(FreeMotion))
                 raise CaseError(f"Holder.free: found {name!r}; must be some of: {known}")
         loads = self._largest("force"), self._largest("approach"), self.closing_moment
         given = sum(load is not None for load in loads)
-        if given > 1 or not (given or self.surface_forces or self.surface_pressures):
+        if given > 1:
             raise CaseError("Holder: needs one of force, approach and closing_moment")
 
-    def in_model(self, dim: int) -> Holder:
-        """Holder of a model in two or three dimensions."""
+    @property
+    def surfaces(self) -> tuple[BodySurface, ...]:
+        """Surfaces that it holds."""
+        given = self.surface
+        return tuple(given) if isinstance(given, Sequence) else (given,)
+
+    @property
+    def pressed(self) -> bool:
+        """True if it is loaded."""
+        loads = self._largest("force"), self._largest("approach"), self.closing_moment
+        loaded = any(load is not None for load in loads)
+        return loaded or bool(self.surface_forces or self.surface_pressures)
+
+    def in_model(self, dim: int, bodies: Sequence[MeshBody]) -> Holder:
+        """Holder of a model in two or three dimensions.
+
+        Parameters
+        ----------
+        dim : int
+        bodies : sequence of MeshBody
+            Bodies of the model.
+        """
+        direction = (0.0,) * (dim - 1) + (-1.0,)
+        if self.direction is not None:
+            given = np.asarray(self.direction, dtype=float)
+            if given.shape != (dim,) or not np.linalg.norm(given) > 0.0:
+                raise CaseError(f"Holder.direction: needs {dim} components, not all of them zero")
+            direction = tuple(map(float, given / np.linalg.norm(given)))
         pivot = (0.0,) * dim if self.pivot is None else self._position(self.pivot, "pivot", dim)
         about_x, about_y, about_z = each_quantity(
             units.SignedMoment, self.moments, "Holder.moments"
@@ -79,7 +113,9 @@ class SurfaceHolder:
             for key, kind in _ON_SURFACES.items()
         }
         return Holder(
-            load_direction=(0.0,) * (dim - 1) + (-1.0,),
+            load_direction=direction,
+            bodies=tuple(bodies.index(surface.body) for surface in self.surfaces),
+            name=self.name or self.surfaces[0].body.name,
             pivot=pivot,
             point=pivot if self.point is None else self._position(self.point, "point", dim),
             free=tuple(self.free),
@@ -118,15 +154,10 @@ class Translation:
     across: bool = False
     history: TimeFunction | None = None
 
-    def relative(self, holds: bool, axisymmetric: bool) -> Motion:
-        """Sliding of body 1 over body 2; `holds` is true for a motion of body 1."""
+    def in_model(self) -> Motion:
+        """Motion of the body in the frame of the model."""
         velocity = in_python(units.Velocity, self.velocity, "Translation.velocity")
-        return Motion(
-            velocity=velocity if holds else -velocity,
-            across=self.across,
-            passes=not holds and not self.across and not axisymmetric,
-            history=self.history,
-        )
+        return Motion(velocity=velocity, across=self.across, history=self.history)
 
 
 @dataclass(frozen=True)
@@ -147,12 +178,8 @@ class Rotation:
     center: tuple[Any, Any] = (0.0, 0.0)
     history: TimeFunction | None = None
 
-    def relative(self, holds: bool, axisymmetric: bool) -> Motion:
-        """Sliding of body 1 over body 2; `holds` is true for a motion of body 1."""
+    def in_model(self) -> Motion:
+        """Motion of the body in the frame of the model."""
         ω = in_python(units.AngularVelocity, self.angular_velocity, "Rotation.angular_velocity")
-        if axisymmetric:
-            return Motion(angular_velocity=ω if holds else -ω, history=self.history)
-        if holds:
-            raise CaseError("Model.motions: a body on a holder cannot rotate about a centre")
         x, y = each_quantity(units.Coordinate, self.center, "Rotation.center")
-        return Motion(angular_velocity=ω, center=(x, y), passes=True, history=self.history)
+        return Motion(angular_velocity=ω, center=(x, y), history=self.history)

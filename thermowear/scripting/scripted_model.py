@@ -18,8 +18,11 @@ from ..model.analyses import (
     StaticAnalysis,
     TransientAnalysis,
 )
-from ..model.conditions import Heat, Motion
+from ..model.conditions import Heat, Holder
+from ..model.interface import Interface
 from ..model.model import Discretisation, Model, Solver
+from ..model.relative_motion import relative_motion
+from ..model.tie import glued_bodies, with_glued
 from ..simulation.analyses.run import needs_single_solution, solve
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.building import build
@@ -29,6 +32,7 @@ from ..timer import Phases
 from .body import BodySurface, MeshBody
 from .conversion import number
 from .face_pair import FacePair
+from .face_tie import FaceTie
 from .holding import Rotation, SurfaceHolder, Translation
 from .march import MarchState, march
 from .solution import ModelSolution
@@ -63,12 +67,14 @@ class ScriptedModel:
         Linear solver of bodies in space: ``"auto"`` (by size), ``"direct"`` or ``"multigrid"``.
     symmetry : sequence of BodySurface
         Surfaces on planes of symmetry x = const.
+    ties : sequence of FaceTie
+        Glued faces.
     title : str
 
     Raises
     ------
     CaseError
-        If it has more bodies, interfaces or holders than are supported, or an argument is invalid.
+        If bodies, interfaces and holders do not fit together, or an argument is invalid.
     """
 
     interfaces: Sequence[FacePair]
@@ -80,27 +86,44 @@ class ScriptedModel:
     degree: int = 2
     solver: Solver = "auto"
     symmetry: Sequence[BodySurface] = ()
+    ties: Sequence[FaceTie] = ()
     title: str = ""
     _shared: dict[Any, Any] = field(default_factory=dict, repr=False)
 
     def __post_init__(self):
-        faces = [face.body for pair in self.interfaces for face in pair.faces]
-        bodies = set(faces) | {holder.surface.body for holder in self.holders} | set(self.motions)
-        counts = len(self.interfaces), len(bodies), len(self.holders)
-        if counts != (1, 2, 1) or len(set(faces)) != 2:
-            raise CaseError(
-                "Model: supported are one interface between two bodies and one holder; found "
-                "{} interfaces, {} bodies and {} holders".format(*counts)
-            )
-        if len({body.name for body in bodies}) != len(bodies):
-            raise CaseError("Model: both bodies have the same name")
-        self._model(closes_by_wear=True)
+        if not self.interfaces or not self.holders:
+            raise CaseError("Model: needs at least one interface and one holder")
+        for pair in self.interfaces:
+            if pair.one.body is pair.other.body:
+                raise CaseError("Model: an interface has both faces on the same body")
+        if not any(holder.pressed for holder in self.holders):
+            raise CaseError("Holder: needs one of force, approach and closing_moment")
+        touching = {face.body for face in self._faces}
+        apart = [body for body in (*self.bodies, *self.motions) if body not in touching]
+        if apart:
+            raise CaseError(f"Model: the body {apart[0].name!r} is at no interface")
+        for kind, names in (
+            ("bodies", [body.name for body in self.bodies]),
+            ("interfaces", [i.name for i in self._model(closes_by_wear=True).interfaces]),
+        ):
+            if len(set(names)) != len(names):
+                raise CaseError(f"Model: two {kind} have the same name; one of: {', '.join(names)}")
 
     @cached_property
     def bodies(self) -> tuple[MeshBody, ...]:
-        """The held body, then the other one."""
-        held = self.holders[0].surface.body
-        return tuple(sorted({f.body for f in self.interfaces[0].faces}, key=lambda b: b != held))
+        """The bodies on holders, then the others."""
+        held = [surface.body for holder in self.holders for surface in holder.surfaces]
+        return tuple(dict.fromkeys([*held, *(face.body for face in self._faces)]))
+
+    @property
+    def _faces(self) -> list[BodySurface]:
+        """Faces in contact, then the glued ones."""
+        pairs: list[FacePair | FaceTie] = [*self.interfaces, *self.ties]
+        return [face for pair in pairs for face in pair.faces]
+
+    @property
+    def _is_pair(self) -> bool:
+        return len(self.bodies) == 2 and len(self.interfaces) == len(self.holders) == 1
 
     @property
     def meshes(self) -> UserMeshes:
@@ -185,7 +208,8 @@ class ScriptedModel:
         return build(model, comm, phases, parts=parts, single=single)
 
     def _model(self, closes_by_wear: bool) -> Model:
-        held, meshes = self.holders[0].surface, self.meshes
+        meshes = self.meshes
+        held = {surface.body: surface for holder in self.holders for surface in holder.surfaces}
         number(self.degree, "Model.degree", 1, 10)
         if self.solver not in SOLVERS:
             raise CaseError(
@@ -205,44 +229,61 @@ class ScriptedModel:
         model = Model(
             kinematics=self.kinematics or "3d",
             bodies=tuple(
-                body.in_model(meshes.surfaces_of(body), held if body is held.body else None)
-                for body in self.bodies
+                body.in_model(meshes.surfaces_of(body), held.get(body)) for body in self.bodies
             ),
-            interfaces=(self.interfaces[0].in_model(self.bodies, closes_by_wear),),
-            holders=(self.holders[0].in_model(dim),),
+            interfaces=tuple(self._interface(pair, closes_by_wear) for pair in self.interfaces),
+            holders=tuple(self._holder(holder, dim) for holder in self.holders),
             meshes=meshes,
             discretisation=Discretisation(self.degree, solver=self.solver),
-            motion=self._motion(),
             heat=self.heat,
             thickness=thickness,
             symmetry=tuple(surface.name for surface in self.symmetry),
             title=self.title,
+            ties=tuple(tie.in_model(self.bodies) for tie in self.ties),
         )
         _check_surfaces(model, meshes.tagged.surfaces)
         return model
 
-    def _motion(self) -> Motion:
-        if len(self.motions) > 1:
-            raise CaseError("Model.motions: give the motion of one body, relative to the other")
-        for body, motion in self.motions.items():
-            return motion.relative(body is self.bodies[0], self.kinematics == "axisymmetric")
-        return Motion()
+    def _interface(self, pair: FacePair, closes_by_wear: bool) -> Interface:
+        """Interface with the held face of a pair first, or that of a body at rest."""
+        order = self.bodies if self._is_pair else [None, *self.motions]
+        first, second = sorted(
+            pair.faces, key=lambda face: order.index(face.body) if face.body in order else 0
+        )
+        one, other = (
+            None if given is None else given.in_model()
+            for given in (self.motions.get(face.body) for face in (first, second))
+        )
+        motion = relative_motion(one, other, self.kinematics == "axisymmetric")
+        found = pair.in_model(self.bodies, (first, second), motion, closes_by_wear)
+        return replace(found, name="") if self._is_pair else found
+
+    def _holder(self, holder: SurfaceHolder, dim: int) -> Holder:
+        found = holder.in_model(dim, self.bodies)
+        groups = glued_bodies(len(self.bodies), [tie.in_model(self.bodies) for tie in self.ties])
+        found = replace(found, bodies=with_glued(found.bodies, groups))
+        return replace(found, name="") if self._is_pair else found
 
 
 def _check_surfaces(model: Model, known: Sequence[str]) -> None:
     """Reject surfaces whose facets do not bound their body."""
-    holder, heat = model.holder, model.heat or Heat()
+    heat = model.heat or Heat()
     supports = [n for b in model.bodies for n in (*b.fixed, *b.rollers, *b.mid_plane)]
-    loads = *holder.surface_forces, *holder.surface_pressures
+    loads = [n for h in model.holders for n in (*h.surface_forces, *h.surface_pressures)]
+    faces = [
+        *(n for i in model.interfaces for n in i.faces),
+        *(n for t in model.ties for n in t.faces),
+    ]
+    glued = {index for tie in model.ties for index in tie.bodies}
     thermal = *heat.cooling, *heat.temperature, *heat.flux, *heat.power
-    for name in (*model.interface.faces, *supports, *loads, *thermal, *model.symmetry):
+    for name in (*faces, *supports, *loads, *thermal, *model.symmetry):
         if name not in known:
             body, _, tag = name.rpartition(":")
             raise CaseError(f"Model: facets with the tag {tag} do not bound the body {body!r}")
-    for held in model.bodies:
+    for index, held in enumerate(model.bodies):
         if held.mid_plane and model.kinematics != "3d":
             raise CaseError(f"Body {held.name!r}: mid_plane requires a mesh in space")
-        if not (held.fixed or held.rollers or held.mid_plane):
+        if not (held.fixed or held.rollers or held.mid_plane or index in glued):
             raise CaseError(f"Body {held.name!r}: is neither on a holder nor fixed")
 
 

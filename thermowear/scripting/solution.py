@@ -12,7 +12,7 @@ from dolfinx import fem
 
 from ..errors import CaseError
 from ..results import Result
-from ..simulation.results.recording import Snapshot, with_holder
+from ..simulation.results.recording import Snapshot
 from .body import MeshBody
 from .user_mesh import UserMeshes
 
@@ -109,12 +109,13 @@ class ContactResults(ABC):
     def wear(self, face: Any, body: MeshBody) -> PointValues:
         """Wear depth of the face of a body."""
         depths = self.snapshot.interface.wear_1, self.snapshot.interface.wear_2
-        return self._at_points(face, "wear", "m", depths[self.meshes.index(body)])
+        return self._at_points(face, "wear", "m", depths[self._side(face, body, "wear")])
 
     def surface_temperature(self, face: Any, body: MeshBody) -> PointValues:
         """Temperature of the face of a body; NaN without heat."""
         both = self.snapshot.interface.temperature_1, self.snapshot.interface.temperature_2
-        return self._at_points(face, "temperature", "K", both[self.meshes.index(body)])
+        values = both[self._side(face, body, "temperature")]
+        return self._at_points(face, "temperature", "K", values)
 
     def temperature(self, body: MeshBody) -> fem.Function:
         """Temperature of a body on its mesh [K]; NaN outside of it. Every rank calls.
@@ -135,10 +136,8 @@ class ContactResults(ABC):
 
         Every rank calls.
         """
-        now = self.snapshot
-        values = with_holder(now.system, now.bodies.displacement, now.motion)
-        spaces = now.system.elastic.spaces
-        return self.meshes.function(body, now.system, spaces, values, "displacement")
+        now, spaces = self.snapshot, self.snapshot.system.elastic.spaces
+        return self.meshes.function(body, now.system, spaces, now.displacement, "displacement")
 
     def to_dataframe(self):
         """Pandas frame of the interface, a row per contact point; columns in SI."""
@@ -146,13 +145,25 @@ class ContactResults(ABC):
         return frame({f.name: getattr(interface, f.name) for f in fields(interface)})
 
     def _at_points(self, face: Any, name: str, unit: str, values: np.ndarray) -> PointValues:
-        if not hasattr(face, "faces") or not {s.body for s in face.faces} <= set(
-            self.meshes.bodies
-        ):
-            raise CaseError(f"{name}: found {face!r}; must be the interface of the model")
-        pairing = self.snapshot.system.pairing
+        index, contacts = self._index(face, name), self.snapshot.system.contacts
+        pairing = contacts.each[index]
         at = pairing.on_body_1, pairing.position, pairing.weights
-        return PointValues(name, unit, values, *at)
+        return PointValues(name, unit, values[contacts.ranges[index]], *at)
+
+    def _index(self, face: Any, name: str) -> int:
+        """Index of an interface in the model."""
+        wanted = {surface.name for surface in getattr(face, "faces", ())}
+        for index, interface in enumerate(self.snapshot.system.model.interfaces):
+            if set(interface.faces) == wanted:
+                return index
+        raise CaseError(f"{name}: found {face!r}; must be an interface of the model")
+
+    def _side(self, face: Any, body: MeshBody, name: str) -> int:
+        """0 for the first body of an interface, 1 for the second one."""
+        pair = self.snapshot.system.model.interfaces[self._index(face, name)].bodies
+        if self.meshes.index(body) not in pair:
+            raise CaseError(f"{name}: {body.name!r} is no body of this interface")
+        return pair.index(self.meshes.index(body))
 
 
 @dataclass(frozen=True)

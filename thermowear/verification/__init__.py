@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from .cases.assembly.clutch_pack import clutch_pack
+from .cases.assembly.face_seal import face_seal
+from .cases.assembly.pad_disk_pad import pad_disk_pad
+from .cases.assembly.two_shoes import two_shoes
 from .cases.contact.contact_methods import methods_agree, patch
+from .cases.contact.glued_blocks import glued_blocks
 from .cases.contact.hertz import flat_punch, hertz_line, hertz_sphere
 from .cases.contact.hertz_in_space import hertz_elliptical, hertz_sphere_3d, hertz_sphere_3d_fine
 from .cases.contact.patch_in_space import patch_3d
@@ -19,6 +24,8 @@ from .cases.steady.minimality import minimality
 from .cases.steady.ring_in_space import ring_3d, ring_3d_whole
 from .cases.steady.special_cases import SPECIAL_CASES
 from .cases.wear.beam_shakedown import beam_shakedown
+from .cases.wear.coated_bush import coated_bush
+from .cases.wear.coating import coating
 from .cases.wear.composite_face import composite_face
 from .cases.wear.geometry_updates import block_on_ring, deep_wear, pin_on_disc
 from .cases.wear.growing import growing_cylinder, growing_sphere
@@ -32,7 +39,8 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     deep_wear, beam_shakedown, fretting_wear, fretting_cylinder, fuel_fretting,
     reciprocating, moving_band, two_slabs, pressure_conductance, temperature_dependent,
     minimality, step_flux, braking_stop, sliding_rod, half_plane_instability, optimal_shape,
-    ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face,
+    ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face, coating, coated_bush,
+    glued_blocks, pad_disk_pad, clutch_pack, face_seal, two_shoes,
 ), ())  # fmt: skip
 CASES = {
     id: identified(id, case, *runs)

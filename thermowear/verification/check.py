@@ -6,13 +6,13 @@ import math
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from .. import geometry  # noqa: F401  (makes the geometries known)
-from ..case import load
+from ..case import AnyCase, load
 from ..case.starters import starter_text
-from ..case.tables.schema import Case
 from ..errors import CaseError, ComputationError
 from ..results import Result
 from ..simulation import run
@@ -130,7 +130,7 @@ def along(interface, radii, values) -> np.ndarray:
     return CubicSpline(interface.x, values)(np.asarray(radii, dtype=float))
 
 
-def computed(case: Case) -> Result:
+def computed(case: AnyCase) -> Result:
     """Compute a case to its end.
 
     Raises
@@ -146,7 +146,7 @@ def computed(case: Case) -> Result:
     return result
 
 
-def starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Case:
+def starter(name: str, *overrides: str, without: tuple[str, ...] = ()) -> Any:
     """Starter case with changes.
 
     Parameters

@@ -120,11 +120,12 @@ def advection(
         Temperature space.
     passage : Passage
     conductivities, capacities : dict of str to float
-        By part [W/(m K)] and [J/(m³ K)], at least for the moving parts.
+        By part [W/(m K)] and [J/(m³ K)], at least for the moving parts of the body.
     """
     mesh, degree = body.mesh, space.ufl_element().degree
     T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
-    moving = {part: (conductivities[part], capacities[part]) for part in passage.parts}
+    own = set(passage.parts) & set(body.parts)
+    moving = {part: (conductivities[part], capacities[part]) for part in own}
     k = body.per_part({part: k for part, (k, _) in moving.items()})
     ρc = body.per_part({part: ρc for part, (_, ρc) in moving.items()})
     v = _velocity(mesh, passage)

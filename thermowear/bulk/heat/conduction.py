@@ -15,16 +15,18 @@ import scipy.sparse as sp
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..body_solvers import solver_in_body
-from ..direct_solver import BodySolvers, multiply
+from ..direct_solver import GroupSolvers, multiply
 from ..field import without_fixed
+from ..group_solvers import solver_in_group
+from ..joints.joined_solver import JoinedSolver
+from ..joints.joint import Joints
 from ..multigrid_solver import MultigridSolver
-from ..solver_choice import AnySolver, SolverChoice, linear_solver
+from ..solver_choice import SolverChoice
 from ..spaces import Spaces
 from .advection import Advection
-from .body_conduction import BodyConduction
-from .even_paths import EvenPaths
-from .path_solver import PathSolver
+from .conduction_solver import ConductionSolver, conduction_solver
+from .even_paths import EvenFactor, EvenPaths
+from .group_conduction import GroupConduction
 
 _BALANCE_FLOOR = 1e-8
 """Fraction of the flows between neighbouring nodes that serves as scale of the heat balance where
@@ -51,7 +53,7 @@ class Conduction:
         Mask of prescribed temperatures.
     prescribed : ndarray, shape (n_owned,)
         Prescribed rise in the fixed values, zero elsewhere [K].
-    factor : DirectSolver or MultigridSolver
+    factor : DirectSolver, GroupSolvers, JoinedSolver, EvenFactor or MultigridSolver
         Solver of conductivity plus bath, with prescribed temperatures eliminated.
     advection : Advection or None
     even : EvenPaths or None
@@ -60,6 +62,8 @@ class Conduction:
         True if the matrix of the solver is symmetric.
     choice : SolverChoice
         Kind of the solver.
+    joints : Joints
+        Joints of glued bodies; their multipliers are heat fluxes into the first of them [W/m²].
     """
 
     spaces: Spaces
@@ -69,11 +73,12 @@ class Conduction:
     bath: PETSc.Mat
     fixed: np.ndarray
     prescribed: np.ndarray
-    factor: AnySolver
+    factor: ConductionSolver
     advection: Advection | None
     even: EvenPaths | None
     symmetric: bool
     choice: SolverChoice
+    joints: Joints
 
     def respond(self, heat: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Rise [K] due to nodal heat [W] alone, homogeneous in prescribed values; by columns."""
@@ -87,7 +92,17 @@ class Conduction:
 
     def solve(self, heat: np.ndarray) -> np.ndarray:
         """Rise [K] due to nodal heat [W] and prescribed temperatures."""
-        return self.prescribed + self.respond(heat - self._from_prescribed)
+        rise = self.prescribed + self.respond(heat - self._from_prescribed)
+        if not self.joints.count:
+            return rise
+        jumps = self.joints.jumps(self.spaces, self.prescribed)
+        return rise - self._joined.closing(jumps) if jumps.any() else rise
+
+    @property
+    def _joined(self) -> JoinedSolver | GroupSolvers | EvenFactor:
+        """Solver of bodies with joints."""
+        assert isinstance(self.factor, JoinedSolver | GroupSolvers | EvenFactor)
+        return self.factor
 
     def with_prescribed(self, prescribed: np.ndarray | None) -> Conduction:
         """Copy with other prescribed rises (n_owned,), zero in the free values; None: as is [K]."""
@@ -126,14 +141,12 @@ class Conduction:
         """Add a multiple of a matrix of the same pattern to the conductivity; a new solver."""
         total = self.conductivity.copy()
         total.axpy(times, matrix, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
-        known = self.spaces, total, self.bath, self.fixed, self.advection, self.even
-        factor = conduction_solver(*known, self.choice, symmetric)
+        factor = self._solver(conductivity=total, symmetric=symmetric)
         return replace(self, conductivity=total, factor=factor, symmetric=symmetric)
 
     def coupled(self, exchange: PETSc.Mat) -> Conduction:
         """Copy whose solver includes heat exchange between the bodies instead of the bath [W/K]."""
-        known = self.spaces, self.conductivity, exchange, self.fixed, self.advection, self.even
-        factor = conduction_solver(*known, self.choice, self.symmetric, coupled=True)
+        factor = self._solver(bath=exchange, coupled=True)
         if isinstance(factor, MultigridSolver) and isinstance(self.factor, MultigridSolver):
             factor.iterations = self.factor.iterations  # counted together
         return replace(self, bath=exchange, factor=factor)
@@ -145,19 +158,39 @@ class Conduction:
         """
         if not self.choice.factorises_heat_columns:
             return self
-        known = self.spaces, self.conductivity, self.bath, self.fixed, self.advection, self.even
-        factor = conduction_solver(*known, SolverChoice(one_at_a_time=True), self.symmetric)
-        return replace(self, factor=factor)
+        return replace(self, factor=self._solver(choice=SolverChoice(one_at_a_time=True)))
+
+    def _solver(self, **others) -> ConductionSolver:
+        """Solver of this problem with other arguments of `conduction_solver`."""
+        names = "spaces", "conductivity", "bath", "fixed", "even", "choice", "symmetric", "joints"
+        own = {name: getattr(self, name) for name in names}
+        return conduction_solver(**(own | {"moving": self.advection} | others))
 
     def release(self) -> None:
         """Free levels of multigrid and factors of columns, until they are needed again."""
-        if isinstance(self.factor, BodySolvers | MultigridSolver):
+        if isinstance(self.factor, GroupSolvers | MultigridSolver):
             self.factor.release()
 
-    def in_body(self, index: int) -> BodyConduction:
-        """Conduction in one body alone, for heat in it. Every rank calls."""
-        solver = solver_in_body(self.factor, self.spaces, index)
-        return BodyConduction(solver, self.spaces.split(self.fixed)[index], self.symmetric)
+    def in_group(self, group: int) -> GroupConduction:
+        """Conduction in one group of bodies, for heat in it. Every rank calls."""
+        solver, rows = solver_in_group(self.factor, self.spaces, group), self.spaces.groups[group]
+        return GroupConduction(solver, self.fixed[self.spaces.rows(*rows)], self.symmetric)
+
+    def multipliers(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
+        """Multipliers of the joints (m,) of a state and its nodal heat, see `losses`; collective.
+
+        Heat fluxes into the first of the bodies [W/m²].
+        """
+        if not self.joints.count:
+            return np.zeros(0)
+        residual = heat - multiply(self.conductivity, rise)
+        return self._joined.multipliers(residual, self.joints.jumps(self.spaces, rise))
+
+    def joint_heat(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
+        """Nodal heat that the joints pass to the bodies [W], see `multipliers`; owned rows."""
+        if not self.joints.count:
+            return np.zeros(len(rise))
+        return -(self.joints.jump @ self.multipliers(rise, heat))
 
     def stored_heat(self, rise: np.ndarray) -> np.ndarray:
         """Nodal stored heat [J], owned rows; its sum over all ranks is that of the bodies."""
@@ -209,6 +242,7 @@ class Conduction:
         """Heat into the values with a prescribed temperature [W]."""
         if not self._has_prescribed:
             return np.zeros(0)
+        heat = heat + self.joint_heat(rise, heat)
         return (heat - multiply(self.conductivity, rise))[self.fixed]
 
     @cached_property
@@ -233,33 +267,6 @@ class Conduction:
     def _free(self, heat):
         """Nodal heat with zeros in the values with a prescribed temperature."""
         return without_fixed(heat, self.fixed) if self._has_prescribed else heat
-
-
-def conduction_solver(
-    spaces: Spaces,
-    conductivity: PETSc.Mat,
-    bath: PETSc.Mat,
-    fixed: np.ndarray,
-    moving: Advection | None,
-    even: EvenPaths | None,
-    choice: SolverChoice,
-    symmetric: bool | None = None,
-    coupled: bool = False,
-) -> AnySolver:
-    """Solver of conductivity plus bath, rows and columns of prescribed temperatures eliminated.
-
-    Where temperatures are uniform along paths it is direct. `coupled` as in `linear_solver`.
-    """
-    matrix = conductivity.copy()
-    matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
-    known = "definite" if (moving is None if symmetric is None else symmetric) else "none"
-    if even is not None:
-        return even.factor(matrix, fixed, known)
-    first = matrix.getOwnershipRange()[0]
-    matrix.zeroRowsColumns((np.flatnonzero(fixed) + first).astype(PETSc.IntType), diag=1.0)
-    if choice.iterative and moving is not None and moving.paths is not None:
-        return PathSolver(matrix, spaces, fixed, moving.paths)
-    return linear_solver(choice, matrix, spaces, fixed, known, coupled=coupled)
 
 
 def _column_sums(matrix: PETSc.Mat) -> np.ndarray:

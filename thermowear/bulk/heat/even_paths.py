@@ -6,6 +6,9 @@ path would be an approximation and would cost digits of the heat balance.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 from petsc4py import PETSc
 
 import numpy as np
@@ -15,8 +18,10 @@ from dolfinx import fem
 from ...errors import CaseError
 from ...parallel import sum_over_ranks
 from ..bodies import Bodies
-from ..direct_solver import DirectSolver
 from ..field import owned
+from ..group_solvers import AnyFactor, factorised
+from ..joints.joined_solver import JoinedSolver
+from ..joints.joint import Joints
 from ..spaces import Spaces
 from .advection import Passage
 
@@ -42,7 +47,7 @@ class EvenPaths:
     """
 
     def __init__(self, bodies: Bodies, spaces: Spaces, passage: Passage):
-        self._comm, self._dim = bodies.comm, bodies.dim
+        self._comm, self._dim, self._bodies = bodies.comm, bodies.dim, len(bodies.each)
         passing = spaces.nodes_of(bodies, *passage.parts)
         self._passing, self._others = np.flatnonzero(passing), np.flatnonzero(~passing)
         places = np.vstack([_places(space, passage) for space in spaces.each])[self._passing]
@@ -84,14 +89,30 @@ class EvenPaths:
         given[self._passing] = mean[self._path]
         return fixed, given
 
-    def factor(self, matrix: PETSc.Mat, fixed: np.ndarray, symmetry: str) -> EvenFactor:
-        """Factorise a matrix of all values with `fixed` values eliminated; see `DirectSolver`."""
+    def factor(
+        self, matrix: PETSc.Mat, fixed: np.ndarray, symmetry: str, joints: Joints
+    ) -> EvenFactor:
+        """Factorise a matrix of all values with `fixed` values eliminated.
+
+        Symmetry as in `DirectSolver`, joints in the layout of the values.
+        """
         join = self._prolongation(matrix)
         small = matrix.ptap(join)
         first = small.getOwnershipRange()[0]
-        held = np.flatnonzero(self.joined(fixed[:, None].astype(float))[:, 0] > 0)
-        small.zeroRowsColumns((held + first).astype(PETSc.IntType), diag=1.0)
-        return EvenFactor(self, small, symmetry, self._dim)
+        held = self.joined(fixed[:, None].astype(float))[:, 0] > 0
+        rows = (np.flatnonzero(held) + first).astype(PETSc.IntType)
+        small.zeroRowsColumns(rows, diag=1.0)
+        border = joints.border(range(self._bodies), slice(None))
+        if border.count:  # where paths cross a joint, it is closed already
+            jump, own = (self._joined_trace(trace) for trace in (border.jump, border.own))
+            border = replace(border, jump=jump, own=own, closed=True)
+        return EvenFactor(self, factorised(small, border, held, symmetry, self._dim))
+
+    def _joined_trace(self, trace: sp.csr_matrix) -> sp.csr_matrix:
+        """Transposed trace on the unknowns, without rounding where its parts cancel."""
+        result = sp.csr_matrix(self.joined(trace))
+        result.data[np.abs(result.data) < _PATH_TOLERANCE * np.abs(trace).max()] = 0.0
+        return result
 
     def joined(self, loads: np.ndarray | sp.csr_matrix):
         """Loads on the unknowns from loads on the nodal values, by columns."""
@@ -133,17 +154,37 @@ class EvenPaths:
         return join
 
 
-class EvenFactor(DirectSolver):
-    """Factorised matrix of the unknowns, for nodal values that are uniform along paths."""
+class EvenFactor:
+    """Factorised matrix of the unknowns, for nodal values that are uniform along paths.
 
-    def __init__(self, paths: EvenPaths, matrix: PETSc.Mat, symmetry: str, dim: int):
-        super().__init__(matrix, symmetry, dim)
-        self._paths = paths
+    Same interface as `JoinedSolver`.
+    """
+
+    def __init__(self, paths: EvenPaths, factor: AnyFactor):
+        self._paths, self._factor = paths, factor
 
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
+        """Nodal values due to nodal loads, see `DirectSolver.solve`."""
+        return self._spread(self._factor.solve, loads)
+
+    def solve_transposed(self, loads: np.ndarray) -> np.ndarray:
+        """Solve with the transposed matrix, see `DirectSolver.solve_transposed`."""
+        return self._spread(self._factor.solve_transposed, loads)
+
+    def _spread(self, solve: Callable, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         columns = loads if loads.ndim == 2 else loads[:, None]
-        unknowns = super().solve(self._paths.joined(columns))
+        unknowns = solve(self._paths.joined(columns))
         return self._paths.spread(unknowns).reshape(loads.shape, order="F")
+
+    def closing(self, jumps: np.ndarray) -> np.ndarray:
+        """Nodal values of given weak jumps, see `JoinedSolver.closing`."""
+        assert isinstance(self._factor, JoinedSolver)
+        return self._paths.spread(self._factor.closing(jumps)[:, None])[:, 0]
+
+    def multipliers(self, residual: np.ndarray, jumps: np.ndarray) -> np.ndarray:
+        """Multipliers of all joints, see `JoinedSolver.multipliers`."""
+        assert isinstance(self._factor, JoinedSolver)
+        return self._factor.multipliers(self._paths.joined(residual[:, None])[:, 0], jumps)
 
 
 def _places(space: fem.FunctionSpace, passage: Passage) -> np.ndarray:

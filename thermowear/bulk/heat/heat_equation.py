@@ -14,11 +14,13 @@ from dolfinx import default_scalar_type, fem
 from ..bodies import Bodies
 from ..body_mesh import BodyMesh
 from ..compiled import assembled_matrix
+from ..joints.joint import NO_JOINTS, Joints
 from ..kinematics import Kinematics, section_measure
 from ..solver_choice import SolverChoice
 from ..spaces import Spaces, block_diagonal
 from .advection import Advection, BodyAdvection, Passage, advection
-from .conduction import Conduction, conduction_solver
+from .conduction import Conduction
+from .conduction_solver import conduction_solver
 from .even_paths import EvenPaths
 from .path_solver import closed_paths
 
@@ -46,6 +48,7 @@ def conduction(
     bath: PETSc.Mat,
     passage: Passage | None = None,
     choice: SolverChoice | None = None,
+    joints: Joints = NO_JOINTS,
 ) -> Conduction:
     """Assemble the heat conduction problem and set up its solver. Every rank calls.
 
@@ -69,8 +72,10 @@ def conduction(
         Motion of a body through the frame.
     choice : SolverChoice, optional
         Direct by default.
+    joints : Joints, optional
+        Joints of glued bodies, see `contact.ties.joints`.
     """
-    choice = choice or SolverChoice()
+    spaces, choice = joints.joining(spaces), choice or SolverChoice()
     spread = passage is not None and passage.spread
     even = EvenPaths(bodies, spaces, passage) if passage is not None and spread else None
     blocks = [
@@ -91,7 +96,9 @@ def conduction(
             moving = replace(moving, paths=closed_paths(bodies, spaces, passage))
         conductivity.axpy(1.0, moving.carried, PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
     fixed, values = given_rises(bodies, spaces, given, even)
-    factor = conduction_solver(spaces, conductivity, bath, fixed, moving, even, choice)
+    factor = conduction_solver(
+        spaces, conductivity, bath, fixed, moving, even, choice, joints=joints
+    )
     return Conduction(
         spaces,
         conductivity,
@@ -105,6 +112,7 @@ def conduction(
         even,
         symmetric=moving is None,
         choice=choice,
+        joints=joints,
     )
 
 

@@ -1,26 +1,20 @@
-"""Linear elasticity of one body: forms, stiffness and its solver."""
+"""Linear elasticity of one body: forms and stiffness."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 from petsc4py import PETSc
 
 import numpy as np
-import scipy.sparse as sp
 import ufl
 from dolfinx import default_scalar_type, fem
 
 from ..body_mesh import BodyMesh
 from ..compiled import assembled_matrix
-from ..direct_solver import DirectSolver, multiply
-from ..field import without_fixed
 from ..kinematics import Kinematics, section_measure
-from ..multigrid_solver import MultigridSolver
-from ..solver_choice import AnySolver, SolverChoice
 from .smoothed_stiffness import edge_smoothed_stiffness
 
 
@@ -122,7 +116,7 @@ class ElasticForms:
 
 @dataclass(frozen=True)
 class ElasticBody(ElasticForms):
-    """Elasticity problem of one body, with the solver of its equations.
+    """Elasticity of one body in its displacement space.
 
     Attributes
     ----------
@@ -130,57 +124,7 @@ class ElasticBody(ElasticForms):
         Displacement space [m].
     fixed : ndarray of bool, shape (n_owned,)
         Mask of values held at zero.
-    support_rows : petsc4py.PETSc.Mat
-        Rows of the stiffness of the nodes of these values, for the support reactions.
-    matrix : petsc4py.PETSc.Mat
-        Stiffness with the rows and columns of these values eliminated.
-    factor : DirectSolver or MultigridSolver
-        Its solver.
-    choice : SolverChoice
     """
 
     space: fem.FunctionSpace
     fixed: np.ndarray
-    support_rows: PETSc.Mat
-    matrix: PETSc.Mat
-    factor: AnySolver
-    choice: SolverChoice
-
-    def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
-        """Displacements [m] due to nodal loads [N]; owned rows, one or several columns."""
-        return self.factor.solve(without_fixed(loads, self.fixed))
-
-    def release(self) -> None:
-        """Free the levels of multigrid, until they are needed again. Every rank calls."""
-        if isinstance(self.factor, MultigridSolver):
-            self.factor.release()
-
-    @contextmanager
-    def solver_of_columns(self) -> Iterator[Callable]:
-        """Function like `solve` for many columns of loads.
-
-        Where single loads are solved for by multigrid it is a factor that exists meanwhile, if one
-        of this body fits into the memory: a column then costs a hundredth. Every rank calls.
-        """
-        if not self.choice.factorises_columns:
-            yield self.solve
-            return
-        matrix = self.matrix.convert(PETSc.Mat.Type.SBAIJ, PETSc.Mat())
-        factor = DirectSolver(matrix, dim=self.body.mesh.topology.dim)
-        try:
-            yield lambda loads: factor.solve(without_fixed(loads, self.fixed))
-        finally:
-            factor.destroy()
-            matrix.destroy()
-
-    def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """Support reactions [N], owned rows; zero in the free values."""
-        result, held = np.zeros(len(self.fixed)), of_nodes(self.fixed, self.space)
-        result[held] = multiply(self.support_rows, displacement) - loads[held]
-        return np.where(self.fixed, result, 0.0)
-
-
-def of_nodes(values: np.ndarray, space: fem.FunctionSpace) -> np.ndarray:
-    """Mask of all values of the nodes of some owned ones, both (n_owned,)."""
-    width = space.dofmap.index_map_bs
-    return np.repeat(values.reshape(-1, width).any(axis=1), width)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,17 +17,19 @@ from ..bodies import Bodies
 from ..body_mesh import BodyMesh
 from ..compiled import surface_area
 from ..direct_solver import eliminate
-from ..field import owned
+from ..field import owned, without_fixed
+from ..joints.joint import NO_JOINTS, Joints
 from ..kinematics import Kinematics
-from ..solver_choice import SolverChoice, linear_solver
-from ..spaces import Spaces, block_diagonal, lagrange_spaces
-from .elastic_body import ElasticBody, ElasticForms, ElasticMaterial, of_nodes
+from ..solver_choice import SolverChoice
+from ..spaces import Rows, Spaces, block_diagonal, lagrange_spaces
+from .elastic_body import ElasticBody, ElasticForms, ElasticMaterial
+from .elastic_group import ElasticGroup, elastic_group
 from .thermal_forces import ThermalForces
 
 
 @dataclass(frozen=True)
 class Elasticity:
-    """Elasticity problem of the bodies, which are solved one after the other.
+    """Elasticity problem of the bodies, solved group by group: of a body, or of glued ones.
 
     Attributes
     ----------
@@ -36,12 +38,18 @@ class Elasticity:
     spaces : Spaces
         Displacement spaces [m].
     each : tuple of ElasticBody
+    joints : Joints
+        Joints of glued bodies; their multipliers are tractions on the first of them [Pa].
+    groups : tuple of ElasticGroup
+        In the order of `Spaces.groups`.
     """
 
     bodies: Bodies
     kinematics: Kinematics
     spaces: Spaces
     each: tuple[ElasticBody, ...]
+    joints: Joints
+    groups: tuple[ElasticGroup, ...]
 
     @cached_property
     def fixed(self) -> np.ndarray:
@@ -72,18 +80,45 @@ class Elasticity:
     def solve(self, loads: np.ndarray | sp.csr_matrix) -> np.ndarray:
         """Displacements [m] due to nodal loads [N]; owned rows, one or several columns."""
         result = np.empty(loads.shape, order="F")
-        parts = zip(self.each, self.spaces.split(loads), self.spaces.split(result), strict=True)
-        for body, load, found in parts:
-            found[...] = body.solve(load)
-            if body.choice.solves_once:
-                body.release()
+        for group, rows in self._with_rows:
+            result[rows] = group.solve(loads[rows])
+            if group.choice.solves_once:
+                group.release()
         return result
 
     def reactions(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Support reactions [N], owned rows; zero in the free values."""
-        split = self.spaces.split
-        parts = zip(self.each, split(displacement), split(loads), strict=True)
-        return np.concatenate([body.reactions(u, load) for body, u, load in parts])
+        result = np.empty(len(loads))
+        for group, rows in self._with_rows:
+            result[rows] = group.reactions(displacement[rows], loads[rows])
+        return result
+
+    def multipliers(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """Multipliers of the joints (m,) of a solution under nodal loads. Every rank calls."""
+        result = np.zeros(self.joints.count)
+        for group, rows in self._with_rows:
+            found = group.multipliers(displacement[rows], loads[rows])
+            result[group.border.columns] = found
+        return result
+
+    def joint_forces(self, displacement: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """Nodal forces of the joints on the bodies [N], supported values included, owned rows."""
+        if not self.joints.count:
+            return np.zeros(len(loads))
+        return -(self.joints.jump @ self.multipliers(displacement, loads))
+
+    def unbalanced(self, forces: np.ndarray) -> np.ndarray:
+        """Nodal forces (n_owned,) on free values without those that the joints carry [N]."""
+        if not self.joints.count:
+            return forces
+        none = np.zeros(len(forces))
+        return forces + without_fixed(self.joint_forces(none, forces), self.fixed)
+
+    @property
+    def _with_rows(self) -> Iterator[tuple[ElasticGroup, Rows]]:
+        """Groups with their owned rows."""
+        for group, bodies in zip(self.groups, self.spaces.groups, strict=True):
+            yield group, self.spaces.rows(*bodies)
 
     def compressibility(self) -> float:
         """Smallest ``1 - 2 ν`` of the bodies; every rank calls."""
@@ -104,7 +139,9 @@ class Elasticity:
         """
         parts = zip(self.each, temperatures.each, strict=True)
         each = tuple(body.load_of_rises(rises, body.space, only) for body, rises in parts)
-        return ThermalForces(each, temperatures, all(b.choice.solves_once for b in self.each))
+        return ThermalForces(
+            each, temperatures, all(group.choice.solves_once for group in self.groups)
+        )
 
 
 def elasticity(
@@ -117,8 +154,9 @@ def elasticity(
     rollers: tuple[str, ...] = (),
     choice: SolverChoice | None = None,
     mid_plane: tuple[str, ...] = (),
+    joints: Callable[[Spaces], Joints] | None = None,
 ) -> Elasticity:
-    """Assemble the stiffness and set up its solver, body by body. Every rank calls.
+    """Assemble the stiffness and set up its solver, group by group. Every rank calls.
 
     Parameters
     ----------
@@ -138,30 +176,30 @@ def elasticity(
         Direct by default.
     mid_plane : tuple of str
         Surfaces in space whose third displacement component vanishes.
+    joints : callable, optional
+        Joints of glued bodies in the displacement spaces, see `contact.ties.joints`.
+
+    Raises
+    ------
+    ComputationError
+        If a body, or a group of glued ones, is not supported, or is too large for a factor.
     """
-    spaces = lagrange_spaces(bodies, degree, bodies.dim)
+    spaces, choice = lagrange_spaces(bodies, degree, bodies.dim), choice or SolverChoice()
+    glued = NO_JOINTS if joints is None else joints(spaces)
+    spaces = glued.joining(spaces)
     guided = symmetric, rollers, mid_plane
     each = []
     for body, space in zip(bodies.each, spaces.each, strict=True):
         forms = ElasticForms(body, kinematics, _lame(body, kinematics, materials))
         fixed = fixed_values(body, kinematics, space, clamped, guided)
-        each.append(_elastic_body(forms, space, fixed, choice or SolverChoice()))
-    return Elasticity(bodies, kinematics, spaces, tuple(each))
-
-
-def _elastic_body(
-    forms: ElasticForms, space: fem.FunctionSpace, fixed: np.ndarray, choice: SolverChoice
-) -> ElasticBody:
-    matrix = forms.stiffness(space, blocked=choice.iterative)
-    support_rows = _rows(matrix, of_nodes(fixed, space))
-    eliminate(matrix, fixed)
-
-    def coarse(linear: Spaces) -> PETSc.Mat:
-        return forms.coarse_stiffness(linear.each[0], space.ufl_element().degree)
-
-    factor = linear_solver(choice, matrix, Spaces((space,)), fixed, coarse=coarse)
-    solved = support_rows, matrix, factor, choice
-    return ElasticBody(forms.body, forms.kinematics, forms.lame, space, fixed, *solved)
+        each.append(ElasticBody(forms.body, kinematics, forms.lame, space, fixed))
+    groups = tuple(
+        elastic_group(
+            [each[k] for k in members], glued.border(members, spaces.rows(*members)), choice
+        )
+        for members in spaces.groups
+    )
+    return Elasticity(bodies, kinematics, spaces, tuple(each), glued, groups)
 
 
 def supported(stiffness: PETSc.Mat, fixed: np.ndarray) -> PETSc.Mat:
@@ -169,16 +207,6 @@ def supported(stiffness: PETSc.Mat, fixed: np.ndarray) -> PETSc.Mat:
     result = stiffness.copy()
     eliminate(result, fixed)
     return result
-
-
-def _rows(matrix: PETSc.Mat, chosen: np.ndarray) -> PETSc.Mat:
-    """Rows of a matrix chosen by a mask of owned values. Every rank calls."""
-    (first, _), (start, end) = matrix.getOwnershipRange(), matrix.getOwnershipRangeColumn()
-    rows = (np.flatnonzero(chosen) + first).astype(PETSc.IntType)
-    return matrix.createSubMatrix(
-        PETSc.IS().createGeneral(rows, matrix.comm),
-        PETSc.IS().createStride(end - start, start, 1, comm=matrix.comm),
-    )
 
 
 def _lame(body: BodyMesh, kinematics: Kinematics, materials: dict[str, ElasticMaterial]):

@@ -23,6 +23,7 @@ from ...laws.coefficients import Constant, Table1D
 from ...laws.expressions import Expression
 from ...laws.formulas import FormulaLaw, FormulaWear
 from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law, Role, registered_laws
+from ...laws.place import PLACE, PlaceFunction
 from ...laws.plausible import require_interface_law, require_wear_rate
 from ..values import units
 from ..values.section import KeyFault, Number, Section
@@ -30,6 +31,7 @@ from ..values.units import expression, quantity
 from .tabulated import must_increase, must_match
 
 _COEFFICIENT: TypeAdapter[float] = TypeAdapter(Annotated[Number, Field(ge=0.0)])
+_PRESSURE: TypeAdapter[float] = TypeAdapter(units.LeastPressure)
 _CONDUCTANCE: TypeAdapter[float] = TypeAdapter(units.HeatTransfer)
 _VARIABLE = re.compile(rf"(?<![\w.])({'|'.join(INTERFACE_VARIABLES)})(?!\w)", re.ASCII)
 
@@ -206,6 +208,14 @@ def _wear(given: Any) -> Any:
     return found
 
 
+def _fluid(given: Any) -> Any:
+    if isinstance(given, PlaceFunction):
+        return given
+    if isinstance(given, str):
+        return PlaceFunction(expression(given, "Pa", tuple(PLACE)))
+    return _PRESSURE.validate_python(given)  # names the missing unit
+
+
 def _written(value: Any) -> Any:
     if isinstance(value, Section):
         return value.model_dump()
@@ -220,6 +230,10 @@ Friction = Annotated[
     float | Expression | LawTable, PlainValidator(_friction), PlainSerializer(_written)
 ]
 """Coefficient of friction: a number, an expression in p, v and T, or a registered law."""
+FluidPressure = Annotated[
+    PlaceFunction, PlainValidator(_fluid), PlainSerializer(lambda value: value.formula.text)
+]
+"""Pressure, or expression in x, y, z and r [Pa]."""
 RateOfWear = Annotated[Expression | LawTable, PlainValidator(_wear), PlainSerializer(_written)]
 """Wear rate: an expression in p, v, T, depth and mu [m/s], or a registered law."""
 Conductance = Annotated[

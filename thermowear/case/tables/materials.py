@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 from pydantic import Field
 
+from ...errors import quoted
 from ..values import units
 from ..values.section import Number, Section
 from .tabulated import ExpansionTable, TemperatureTable
@@ -49,3 +51,72 @@ class BodyTable(Properties):
     def has_own(self) -> bool:
         """True if the body has a material of its own, besides those of its cell sets."""
         return bool(self.model_fields_set - {"materials"})
+
+
+def cell_sets(bodies: Mapping[str, BodyTable], wear: Any) -> dict[str, dict[str, str]]:
+    """Cell sets with a material or wear law of their own, and the paths of their tables, by body.
+
+    Parameters
+    ----------
+    bodies : mapping of str to BodyTable
+    wear : WearTable
+    """
+    sets: dict[str, dict[str, str]] = {}
+    for kind, tables in (("bodies", bodies), ("wear", wear)):
+        for name, table in tables.items():
+            for part, own in table.materials.items():
+                if getattr(own, "where", None) is not None:
+                    continue
+                sets.setdefault(name, {}).setdefault(part, f"{kind}.{name}.materials.{part}")
+    return sets
+
+
+def part_named(geometry: Any, body: str, name: str) -> str | None:
+    """Part of a body by the name of its zone, or cell set of a mesh file; None if unknown.
+
+    Parameters
+    ----------
+    geometry : Geometry or AssemblyGeometry
+    body, name : str
+    """
+    zones, set_of = geometry.parts_of(body)[1:], geometry.set_of
+    return next((part for part in zones if set_of.get(part, part) == name), None)
+
+
+def located_material(
+    geometry: Any, bodies: Mapping[str, BodyTable], part: str
+) -> tuple[str, Properties]:
+    """Path of the table that defines the material of a part, and this material.
+
+    Parameters
+    ----------
+    geometry : Geometry or AssemblyGeometry
+    bodies : mapping of str to BodyTable
+    part : str
+
+    Raises
+    ------
+    ValueError
+        If ``like`` names an unknown body, or is circular.
+    """
+    owner = geometry.zones.get(part, part)
+    name = part if part in bodies else owner
+    chosen = geometry.set_of.get(part)
+    if chosen is not None and chosen not in bodies[owner].materials:
+        chosen = None  # it has a wear law of its own only
+    if chosen is None and not bodies[name].has_own and bodies[name].materials:
+        chosen = next(iter(bodies[name].materials))  # all of its cells are in sets
+    table: Properties = bodies[name]
+    path = f"bodies.{name}"
+    if chosen is not None:
+        path, table = f"bodies.{owner}.materials.{chosen}", bodies[owner].materials[chosen]
+    seen = [path]
+    while (other := table.like) is not None:
+        path, known = f"bodies.{other}", ", ".join(bodies)
+        if other not in bodies:
+            raise ValueError(f"like = {quoted(other)} names no body; one of: {known}")
+        if path in seen:
+            raise ValueError(f"like = {quoted(other)} is a circular reference")
+        seen.append(path)
+        table = bodies[other]
+    return path, table

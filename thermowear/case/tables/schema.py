@@ -5,23 +5,19 @@ All values are in SI after reading; `units` defines the unit of each key.
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
-from ...errors import CaseError, quoted
-from ...laws.interfaces import Law
-from ...laws.plausible import typical_value
-from ..values import units
-from ..values.section import Number, Section, Switch, number_or
+from ...errors import CaseError
+from ..values.section import Number, Section
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
+from .contact import ContactTable
 from .geometry import Pressing
 from .geometry_choice import AnyGeometry
-from .laws import Friction, law_of
-from .materials import BodyTable, Properties
-from .tabulated import FactorHistory, MultiplierTables, TimeHistory
+from .materials import BodyTable, Properties, cell_sets, located_material, part_named
+from .tabulated import TimeHistory
 from .wear import WearTable
 
 _MOST_NODES = 2_000_000
@@ -29,21 +25,6 @@ _MOST_NODES = 2_000_000
 
 Elements = Annotated[int, Field(ge=1, le=2000, strict=True)]
 Grading = Annotated[Number, Field(ge=0.05, le=1.0)]
-
-
-_PRESSURE_DEGREE = number_or(
-    "lobatto",
-    None,
-    where=lambda degree: isinstance(degree, int) and 1 <= degree <= 10,
-    allowed='a whole number from 1 to 10, or "lobatto"',
-)
-
-
-def _exact(value: Any) -> Any:
-    """Reject 1.0 and true, which are equal to 1 in Python."""
-    if isinstance(value, bool | float):
-        raise ValueError(f"found {quoted(value)}; must be 1, 0 or -1")
-    return value
 
 
 class FaceMesh(Section):
@@ -82,41 +63,26 @@ class MeshTable(Section):
         return own.elements or self.elements, own.grading or self.grading
 
 
-class ContactTable(Section):
-    """Table ``contact``, see `model.interface.Interface`.
+def check_size(mesh, degree: int) -> None:
+    """Reject a mesh with more nodes than can be computed.
 
-    Attributes
-    ----------
-    friction_factor : MultiplierTables
-        Multipliers of the friction: tables of mean face temperature, pressure and speed.
-    method, penalty, theta, gamma
-        See `model.interface.ContactMethod`.
-    positioning : bool
-        Move the mesh until element ends coincide with the contact edges.
+    Raises
+    ------
+    CaseError
     """
-
-    friction: Friction = 0.0
-    friction_factor: MultiplierTables = MultiplierTables()
-    friction_history: FactorHistory | None = None
-    transverse_friction: Annotated[Number, Field(ge=0.0)] = 0.0
-    compliance: units.Compliance | None = None
-    method: Literal["condensed", "pointwise", "penalty", "nitsche"] = "condensed"
-    pressure_degree: Annotated[int | Literal["lobatto"] | None, _PRESSURE_DEGREE] = None
-    penalty: units.Foundation | None = None
-    theta: Annotated[Literal[1, 0, -1] | None, BeforeValidator(_exact)] = None
-    gamma: Annotated[Number, Field(gt=0.0)] | None = None
-    positioning: Switch = False
-
-    @property
-    def friction_law(self) -> Law:
-        """Coefficient of friction as a law, without `friction_factor`."""
-        return law_of(self.friction, "contact.friction", -math.inf)
-
-    @property
-    def nominal_friction(self) -> float:
-        """Coefficient of friction; for a law, its value in a typical state."""
-        given = self.friction
-        return given if isinstance(given, float) else typical_value(self.friction_law)
+    cells = sum(len(block.cells) for block in mesh.blocks)
+    nodes = sum(
+        # five or six tetrahedra fill a hexahedron
+        len(block.cells) / (5 if block.cell_type == "tetrahedron" else 1)
+        for block in mesh.blocks
+    )
+    nodes *= degree ** mesh.points.shape[1]
+    if nodes > _MOST_NODES:
+        raise CaseError(
+            f"mesh: {cells} cells of degree {degree} have about {nodes / 1e6:.2g} million nodes; "
+            f"at most {_MOST_NODES / 1e6:g} million can be computed; check the units of the "
+            "geometry, or lower mesh.elements or mesh.degree"
+        )
 
 
 class Case(Section):
@@ -140,11 +106,7 @@ class Case(Section):
 
     @model_validator(mode="after")
     def _cell_sets_as_parts(self):
-        sets: dict[str, dict[str, str]] = {}
-        for kind, tables in (("bodies", self.bodies), ("wear", self.wear)):
-            for name, table in tables.items():
-                for part in table.materials:
-                    sets.setdefault(name, {}).setdefault(part, f"{kind}.{name}.materials.{part}")
+        sets = cell_sets(self.bodies, self.wear)
         if sets:
             object.__setattr__(self, "geometry", self.geometry.with_cell_sets(sets))
         return self
@@ -197,8 +159,7 @@ class Case(Section):
     @property
     def friction_variables(self) -> frozenset[str]:
         """Variables of the coefficient of friction and its factors: of p, v and T."""
-        contact = self.contact
-        return contact.friction_law.variables | contact.friction_factor.multipliers.variables
+        return self.contact.friction_variables
 
     @property
     def varies(self) -> bool:
@@ -208,6 +169,7 @@ class Case(Section):
             not isinstance(conductance, float | None)
             or bool(self.friction_variables)
             or any(law.factor.depends_on or law.follows_state for law in self.wear.laws.values())
+            or any(law.follows_state for own in self.wear.values() for law in own.of_layers)
         )
 
     def tagged_mesh(self, zone: tuple[float, float] | None = None):
@@ -226,20 +188,7 @@ class Case(Section):
         if zone is None:
             zone = self.geometry.expected_zone(self.pressing())
         mesh = self.geometry.build(self.mesh, zone)
-        cells = sum(len(block.cells) for block in mesh.blocks)
-        nodes = sum(
-            # five or six tetrahedra fill a hexahedron
-            len(block.cells) / (5 if block.cell_type == "tetrahedron" else 1)
-            for block in mesh.blocks
-        )
-        nodes *= self.mesh.degree ** mesh.points.shape[1]
-        if nodes > _MOST_NODES:
-            raise CaseError(
-                f"mesh: {cells} cells of degree {self.mesh.degree} have about "
-                f"{nodes / 1e6:.2g} million nodes; at most {_MOST_NODES / 1e6:g} million can be "
-                "computed; check the units of the geometry, or lower mesh.elements or "
-                "mesh.degree"
-            )
+        check_size(mesh, self.mesh.degree)
         x = mesh.points[:, 0]
         if self.model == "axisymmetric" and x.min() < -1e-9 * x.max():
             raise CaseError("geometry: x is the radius of an axisymmetric mesh, found x < 0")
@@ -248,8 +197,7 @@ class Case(Section):
 
     def part_named(self, body: str, name: str) -> str | None:
         """Part of a body by the name of its zone, or cell set of a mesh file; None if unknown."""
-        zones, set_of = self.geometry.parts_of(body)[1:], self.geometry.set_of
-        return next((part for part in zones if set_of.get(part, part) == name), None)
+        return part_named(self.geometry, body, name)
 
     def material(self, part: str) -> Properties:
         """Material of a part, with ``like`` resolved; a zone may share the material of its body."""
@@ -263,30 +211,9 @@ class Case(Section):
         ValueError
             If ``like`` names an unknown body, or is circular.
         """
-        geometry, bodies = self.geometry, self.bodies
-        owner = geometry.zones.get(part, part)
-        name = part if part in bodies else owner
-        chosen = geometry.set_of.get(part)
-        if chosen is not None and chosen not in bodies[owner].materials:
-            chosen = None  # it has a wear law of its own only
-        if chosen is None and not bodies[name].has_own and bodies[name].materials:
-            chosen = next(iter(bodies[name].materials))  # all of its cells are in sets
-        table: Properties = bodies[name]
-        path = f"bodies.{name}"
-        if chosen is not None:
-            path, table = f"bodies.{owner}.materials.{chosen}", bodies[owner].materials[chosen]
-        seen = [path]
-        while (other := table.like) is not None:
-            path, known = f"bodies.{other}", ", ".join(bodies)
-            if other not in bodies:
-                raise ValueError(f"like = {quoted(other)} names no body; one of: {known}")
-            if path in seen:
-                raise ValueError(f"like = {quoted(other)} is a circular reference")
-            seen.append(path)
-            table = bodies[other]
-        return path, table
+        return located_material(self.geometry, self.bodies, part)
 
 
-def as_plain(case: Case) -> dict[str, Any]:
+def as_plain(case: Section) -> dict[str, Any]:
     """Case as nested tables of text and numbers, including defaults."""
     return case.model_dump(exclude_none=True)

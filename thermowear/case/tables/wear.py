@@ -1,154 +1,29 @@
-"""Table ``wear``: wear law of each body, and settings of the geometry updates.
-
-The wear law is ``rate = coefficient · s^b · v^a`` (s: friction stress or pressure),
-or any law of the rate.
-"""
+"""Table ``wear``: wear law of each body, of its layers and parts, settings of geometry updates."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
-from pydantic import (
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    PlainSerializer,
-    model_serializer,
-    model_validator,
-)
+from pydantic import ConfigDict, Field, model_validator
 
-from ...laws.interfaces import Law
-from ..values.section import KeyFault, Number, Section, number_or
-from ..values.units import parse, registry
-from .laws import RateOfWear, wear_rate_of
-from .tabulated import MultiplierTables
-
-_EXAMPLE = "2e-7 1/MPa"
-_OF_POWER = ("coefficient", "per", "pressure_exponent", "velocity_exponent")
-"""Keys of a power law."""
-
-
-def _coefficient(text: Any):
-    value = parse(text, _EXAMPLE)
-    if not value.magnitude > 0:
-        raise ValueError(f'found "{text}"; must be greater than 0')
-    return value
-
-
-def _text(value) -> str:
-    """Text that is read back to the same quantity exactly."""
-    unit = f"{value.units:~C}"
-    if registry().parse_units(unit) != value.units:  # pint rounds the exponents it writes
-        unit = " * ".join(f"{name}**{power!r}" for name, power in value.unit_items())
-    return f"{value.magnitude!r} {unit}"
-
-
-Coefficient = Annotated[Any, BeforeValidator(_coefficient), PlainSerializer(_text, return_type=str)]
-
-
-class RateTable(Section):
-    """Wear law: a coefficient with exponents, or a rate.
-
-    Attributes
-    ----------
-    coefficient : pint.Quantity or None
-        Wear coefficient, in a unit that fits both exponents.
-    rate : Expression, LawTable or None
-        Wear rate as an expression in p, v, T, depth and mu, or a registered law, in place of the
-        coefficient, its exponents and `per`.
-    per : str
-        ``"friction-stress"``: the coefficient multiplies ``(mu p)^b v^a``; ``"pressure"``:
-        ``p^b v^a``.
-    pressure_exponent, velocity_exponent : float
-        b and a.
-    factor : MultiplierTables
-        Factors of the rate: tables of the temperature of the body's own face, pressure and speed.
-    """
-
-    coefficient: Coefficient | None = None
-    rate: RateOfWear | None = None
-    per: Literal["friction-stress", "pressure"] = "friction-stress"
-    pressure_exponent: Annotated[Number, Field(ge=0.1, le=10.0)] = 1.0
-    velocity_exponent: Annotated[Number, Field(ge=0.0, le=10.0)] = 1.0
-    factor: MultiplierTables = MultiplierTables()
-
-    @property
-    def has_law(self) -> bool:
-        """True if it has a law, or a key of one."""
-        return True
-
-    @model_validator(mode="after")
-    def _one_law(self):
-        if not self.has_law:
-            return self
-        if self.rate is not None:
-            for key in _OF_POWER:
-                if key in self.model_fields_set:
-                    raise KeyFault(key, "not allowed together with rate")
-            return self
-        if self.coefficient is None:
-            raise KeyFault("coefficient", "missing")
-        try:
-            number = self.coefficient_si()
-        except (OverflowError, ZeroDivisionError):
-            number = math.inf
-        if not 0 < number < math.inf:
-            raise KeyFault("coefficient", f'found "{_text(self.coefficient)}"; out of range in SI')
-        return self
-
-    @model_serializer(mode="wrap")
-    def _without_other_keys(self, handler):
-        """Leave out the keys of the other type of law or of both, and an empty table of parts."""
-        written, left_out = handler(self).items(), {"rate"} if self.rate is None else {*_OF_POWER}
-        if self.coefficient is None and self.rate is None:
-            left_out = {*RateTable.model_fields}
-        return {k: v for k, v in written if k not in left_out and (k != "materials" or v)}
-
-    @property
-    def law(self) -> Law | None:
-        """Law given by `rate`; None for a coefficient."""
-        return None if self.rate is None else wear_rate_of(self.rate)
-
-    @property
-    def variables(self) -> frozenset[str]:
-        """Variables of the law (p, v, T, depth, mu), without those of the tables of factors."""
-        if self.law is not None:
-            return self.law.variables
-        return frozenset({"p", "v", "mu"} if self.per == "friction-stress" else {"p", "v"})
-
-    @property
-    def follows_state(self) -> bool:
-        """True if the rate depends on the temperature or on the wear depth."""
-        return bool(self.variables & {"T", "depth"})
-
-    def coefficient_si(self) -> float:
-        """Coefficient in ``(m/s)^(1-a) Pa^(-b)``.
-
-        Raises
-        ------
-        ValueError
-            If its unit does not fit the exponents.
-        """
-        assert self.coefficient is not None
-        a, b = self.velocity_exponent, self.pressure_exponent
-        needed = {"[length]": 1 - a + b, "[time]": a - 1 + 2 * b, "[mass]": -b}
-        found = dict(self.coefficient.dimensionality)
-        if any(
-            abs(needed.get(k, 0) - found.get(k, 0)) > 1e-9 for k in needed.keys() | found.keys()
-        ):
-            rate = "" if a == 1 else f"(m/s)^{1 - a:.12g} "
-            raise KeyFault(
-                "coefficient",
-                f'the unit of "{_text(self.coefficient)}" does not fit the exponents'
-                f" a = {a:g} and b = {b:g}; needs {rate}1/MPa^{b:.12g} or the like",
-            )
-        return float(self.coefficient.to_base_units().magnitude)
+from ..values.regions import RegionOfSpace
+from ..values.section import KeyFault, Section, number_or
+from .layers import LayersTable
+from .wear_rate import RateTable
 
 
 class PartWearTable(RateTable):
-    """Wear law of a part of a contact face."""
+    """Wear law of a part of a contact face.
+
+    Attributes
+    ----------
+    where : Region or None
+        Region of a part by the place; without it the name is that of a cell set or zone.
+    """
+
+    where: RegionOfSpace | None = None
 
 
 class BodyWearTable(RateTable):
@@ -160,17 +35,36 @@ class BodyWearTable(RateTable):
         ``"in-place"``: wear at the contact points; ``"track"``: wear of body 2 along its whole
         track: uniform in plane models; on a rotating disk at each radius, multiplied by the
         fraction of a turn for which it is under the pad.
+    layers : LayersTable or None
+        Layers on the face; the body's own law is that of the substrate below them.
     materials : dict of str to PartWearTable
-        Wear laws by cell set of a mesh file, or by zone of a geometry. All other cells of the face
+        Wear laws by cell set of a mesh file, by zone of a geometry, or by a name of their own for a
+        region (`where`). All other cells of the face
         wear by the body's own law, which may be omitted if there are none.
     """
 
     spread: Literal["in-place", "track"] = "in-place"
+    layers: LayersTable | None = None
     materials: dict[str, PartWearTable] = {}
 
     @property
     def has_law(self) -> bool:
         return not self.materials or bool(self.model_fields_set & RateTable.model_fields.keys())
+
+    @model_validator(mode="after")
+    def _layers_fit(self):
+        for layer, law in enumerate(self.of_layers):
+            try:
+                if law.rate is None:
+                    law.require_coefficient()
+            except KeyFault as fault:
+                raise KeyFault(f"layers.coefficient.{layer}", str(fault)) from None
+        return self
+
+    @property
+    def of_layers(self) -> tuple[RateTable, ...]:
+        """Law of each layer, from the surface down."""
+        return () if self.layers is None else self.layers.each(self)
 
 
 _UPDATE = number_or(

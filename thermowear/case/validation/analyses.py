@@ -20,6 +20,7 @@ _NOT_IN = {
     "heat": ("fretting", "reciprocating"),
     "motion": ("fretting",),
     "load.pressure": ("fretting",),
+    "contact.fluid_pressure": ("fretting", "reciprocating"),
 }
 """Analyses that do not support a table."""
 _CONSTANT = ("fretting", "reciprocating", "stability")

@@ -12,6 +12,7 @@ from ..tables.analyses import Transient
 from ..tables.schema import Case
 from ..values.section import Fault
 from . import analyses, conditions, materials
+from .layer_wear import layer_wear
 from .part_wear import part_wear
 
 _SLIDING = ("steady", "transient", "reciprocating")
@@ -213,6 +214,7 @@ _CHECKS = (
     _sliding,
     _spread,
     part_wear,
+    layer_wear,
     analyses.fretting,
     conditions.heat,
     analyses.varying,

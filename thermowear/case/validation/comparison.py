@@ -6,8 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from ..assembly.schema import AssemblyCase
 from ..tables.analyses import Fretting, Reciprocating, Timed
 from ..tables.schema import Case, as_plain
+from ..values.section import Section
+
+AnyCase = Case | AssemblyCase
 
 _FREE = {"title", "analysis.max_steps", "analysis.frames", "analysis.checkpoint_every"}
 """Keys that do not affect any computed number."""
@@ -38,17 +42,17 @@ class Change:
         return f"{self.key} was {_truncated(self.before)}, is now {_truncated(self.now)}"
 
 
-def changes(before: Case, now: Case) -> list[Change]:
+def changes(before: Section, now: Section) -> list[Change]:
     """Keys whose values differ between two cases, in the order of the case."""
     return list(_differences(as_plain(before), as_plain(now), ""))
 
 
-def irrelevant_changes_only(before: Case, now: Case) -> bool:
+def irrelevant_changes_only(before: Section, now: Section) -> bool:
     """True if both lead to the same numbers, provided that a mesh file has the same content."""
     return all(change.key in _FREE | {"geometry.path"} for change in changes(before, now))
 
 
-def forbidden_changes(before: Case, now: Case, time: float) -> list[Change]:
+def forbidden_changes(before: AnyCase, now: AnyCase, time: float) -> list[Change]:
     """Changes that prevent a case from resuming another one's run at a time [s].
 
     The physics must be identical. The end may change unless it has passed, and so may later
@@ -76,9 +80,11 @@ def _truncated(value: Any) -> str:
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 2]} …"
 
 
-def _end_time(case: Case) -> float | None:
+def _end_time(case: AnyCase) -> float | None:
     """Latest end time of an analysis that can be extended [s]."""
     settings = case.analysis
+    if isinstance(case, AssemblyCase):
+        return None if not isinstance(settings, Timed) else settings.end_time or float("inf")
     if isinstance(settings, Fretting):
         assert case.load.history is not None  # the case has been checked
         return case.load.history.loads.end(int(case.cycles or 1))
@@ -92,7 +98,7 @@ def _end_time(case: Case) -> float | None:
     return float("inf") if settings.end_time is None else settings.end_time
 
 
-def _outputs(case: Case, time: float) -> set[float]:
+def _outputs(case: AnyCase, time: float) -> set[float]:
     """Output times reached at a time."""
     settings = case.analysis
     if not isinstance(settings, Timed | Fretting):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ..assembly.schema import AssemblyCase
 from ..tables.materials import Properties
 from ..tables.schema import Case
 from ..values.section import Fault
@@ -14,7 +15,7 @@ contact: up to this value the error of the force is at most twice that at 0.3; n
 degree 3 on."""
 
 
-def locking(case: Case) -> Iterator[Fault]:
+def locking(case: Case | AssemblyCase) -> Iterator[Fault]:
     """Volumetric locking of low-order elements at nearly constant volume."""
     limit = _LOCKING.get(case.mesh.degree)
     if limit is None or case.model == "plane-stress":
@@ -62,7 +63,7 @@ def materials(case: Case) -> Iterator[Fault]:
     yield from missing.items()
 
 
-def cell_sets(case: Case) -> Iterator[Fault]:
+def cell_sets(case: Case | AssemblyCase) -> Iterator[Fault]:
     """Materials by cell set require bodies of a mesh file, with a material for each cell."""
     geometry = case.geometry
     for name, body in case.bodies.items():

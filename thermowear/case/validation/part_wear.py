@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ..assembly.schema import AssemblyCase
+from ..tables.materials import part_named
 from ..tables.schema import Case
 from ..values.section import Fault
 
 _CYCLIC = ("fretting", "reciprocating")
 
 
-def part_wear(case: Case) -> Iterator[Fault]:
+def part_wear(case: Case | AssemblyCase) -> Iterator[Fault]:
     """Wear laws of parts name parts of the body, which wears in place, in one direction."""
     geometry, type_ = case.geometry, case.analysis.type
     for body, wear in case.wear.items():
@@ -18,11 +20,13 @@ def part_wear(case: Case) -> Iterator[Fault]:
         if not wear.materials or body not in geometry.bodies:
             continue
         known = [geometry.set_of.get(part, part) for part in geometry.parts_of(body)[1:]]
-        if not known:
-            yield path, f"{geometry.type!r} has no parts of {body}; leave it out"
+        by_name = [name for name, law in wear.materials.items() if law.where is None]
+        if by_name and not known:
+            text = f"{geometry.type!r} has no parts of {body}; leave it out, or add where = ..."
+            yield path, text
             continue
-        for name in wear.materials:
-            if case.part_named(body, name) is None:
+        for name in by_name:
+            if part_named(geometry, body, name) is None:
                 yield f"{path}.{name}", f"unknown part; must be one of: {', '.join(known)}"
         if type_ in _CYCLIC:
             yield path, f"is not supported in a {type_} analysis"

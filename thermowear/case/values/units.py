@@ -18,6 +18,7 @@ from pydantic import BeforeValidator, PlainSerializer
 from ...errors import CaseError, quoted
 from ...laws.expressions import Dimension, Expression, parse_expression
 from ...laws.interfaces import UNITS
+from ...laws.place import PLACE
 
 _LONGEST = 200
 """Largest number of characters of a quantity."""
@@ -216,14 +217,15 @@ def expression(text: str, unit: str, variables: tuple[str, ...]) -> Expression:
     unit : str
         Unit of the value of the expression.
     variables : tuple of str
-        Variables that may occur, from `UNITS`.
+        Variables that may occur, from `UNITS` or `PLACE`.
 
     Raises
     ------
     ValueError
         One-line message with the position of the fault.
     """
-    known = {name: in_si(UNITS[name])[1] if UNITS[name] else Dimension() for name in variables}
+    units = UNITS | PLACE
+    known = {name: in_si(units[name])[1] if units[name] else Dimension() for name in variables}
     return parse_expression(text, known, unit, in_si)
 
 

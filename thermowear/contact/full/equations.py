@@ -177,7 +177,7 @@ class ContactEquations:
         contact += self.theta * (self._stress @ (self._scale * stress))
         elastic = self.elastic_forces(displacement)
         loads = without_fixed(loading.nodal_loads, self.elastic.fixed)
-        forces = elastic - contact - loads
+        forces = self.elastic.unbalanced(elastic - contact - loads)
         balance = (
             motions.weighted_force_modes.T @ pressure + motions.springs @ motion - motions.load
         )

@@ -7,10 +7,10 @@ from petsc4py import PETSc
 import numpy as np
 import scipy.sparse as sp
 
-from ...bulk.direct_solver import DirectSolver
+from ...bulk.group_solvers import AnyFactor, factorised
 from ...bulk.mechanics.elasticity import Elasticity, supported
+from ...bulk.spaces import distributed
 from ...errors import ComputationError
-from ..operators.traces import distributed
 
 _SAME_PATTERN = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
 _SUBSET_PATTERN = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
@@ -43,7 +43,8 @@ class NewtonMatrix:
         subtracted: np.ndarray,
         symmetry: str,
     ):
-        self._symmetry, self._dim = symmetry, elastic.bodies.dim
+        self._symmetry, self._dim, self._fixed = symmetry, elastic.bodies.dim, elastic.fixed
+        self._border = elastic.joints.border(range(len(elastic.each)), slice(None))
         fixed = supported(elastic.stiffness, elastic.fixed)
         if subtracted.any():
             columns = distributed(elastic.spaces, stress)
@@ -59,10 +60,10 @@ class NewtonMatrix:
         self._constant = self._matrix.copy()
         self._constant.zeroEntries()
         self._constant.axpy(1.0, fixed, _SUBSET_PATTERN)
-        self._factor: DirectSolver | None = None
+        self._factor: AnyFactor | None = None
         self._factors = np.zeros(0)
 
-    def factor(self, factors: np.ndarray) -> DirectSolver:
+    def factor(self, factors: np.ndarray) -> AnyFactor:
         """Factorise the matrix for values of a, shape (n,).
 
         Raises
@@ -78,7 +79,8 @@ class NewtonMatrix:
         self._constant.copy(self._matrix, _SAME_PATTERN)
         self._matrix.axpy(1.0, self._product, _SUBSET_PATTERN)
         if self._factor is None:
-            self._factor = DirectSolver(self._matrix, self._symmetry, self._dim)
+            known = self._border, self._fixed, self._symmetry, self._dim
+            self._factor = factorised(self._matrix, *known)
         else:
             self._factor.repeat()
         if self._symmetry == "symmetric" and self._factor.negative_pivots:

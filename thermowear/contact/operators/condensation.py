@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 from petsc4py import PETSc
 
@@ -13,16 +14,14 @@ import scipy.sparse as sp
 from ...bulk.heat.conduction import Conduction
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.mechanics.thermal_forces import ThermalForces
-from ...bulk.spaces import Spaces
+from ...bulk.spaces import Spaces, distributed
 from ...parallel import sum_over_ranks
-from ..search.pairing import Pairing
-from .face_nodes import face_nodes
+from .face_nodes import nodes_by_group
 from .heat_exchange import FaceHeat, InterfaceHeat
 from .nodal_responses import NodalResponses
 from .pressure import Basis, PressureSpace, scaled
 from .rigid_motion import RigidHolder
 from .thermal_opening import DistortionRows, elastic_columns
-from .traces import distributed
 
 
 @dataclass(frozen=True)
@@ -91,7 +90,7 @@ class Influence(PressureSpace):
 
 def influence(
     elastic: Elasticity,
-    pairing: Pairing,
+    weights: np.ndarray,
     trace: sp.csr_matrix,
     basis: Basis,
     thermal_loads: Sequence[ThermalForces] = (),
@@ -105,7 +104,8 @@ def influence(
     Parameters
     ----------
     elastic : Elasticity
-    pairing : Pairing
+    weights : ndarray, shape (n,)
+        Areas of the contact points [m²].
     trace : csr_matrix, shape (n_owned, n)
         Transposed gap trace Bᵀ.
     basis : ndarray or csr_array, shape (n, m)
@@ -116,21 +116,25 @@ def influence(
         Receives the weak gap per nodal rise of the first of them, which is not stored.
     """
     dim = elastic.bodies.dim
-    weighted = scaled(pairing.weights, basis)
+    weighted = scaled(weights, basis)
     loads = pressure_loads(trace, weighted)
     nodes = np.unique(np.flatnonzero(np.diff(trace.indptr)) // dim)
     touching = (nodes[:, None] * dim + np.arange(dim)).ravel()
     near = np.zeros((len(touching), loads.shape[1]))
     kept, used = (thermal_loads,) * 2 if distortion is None else ((), thermal_loads[:1])
     per_rise = [np.zeros((G.columns.owned, loads.shape[1]), order="F") for G in kept]
+    spaces = elastic.spaces
+    body = np.searchsorted(spaces.starts, touching, side="right") - 1
     for found in elastic_columns(elastic, loads, used):
-        start, end = elastic.spaces.starts[found.body : found.body + 2]
-        inside = slice(*np.searchsorted(touching, (start, end)))
-        near[inside, found.columns] = found.displacements[touching[inside] - start]
+        bodies = spaces.groups[found.group]
+        inside = np.flatnonzero(np.isin(body, bodies))
+        rows = spaces.within(found.group, touching[inside])
+        columns = np.r_[found.columns]
+        near[np.ix_(inside, columns)] = found.displacements[rows]
         for matrix, products, product in zip(kept, per_rise, found.per_rise, strict=False):
-            matrix.columns.split(products)[found.body][:, found.columns] = product
+            products[np.ix_(np.r_[matrix.columns.rows(*bodies)], columns)] = product
         if distortion is not None:
-            distortion.add(found.body, found.columns, found.per_rise[0])
+            distortion.add(found.group, found.columns, found.per_rise[0])
     comm = elastic.bodies.comm
     return Influence(basis, weighted, trace, touching, near, tuple(per_rise), comm)
 
@@ -142,7 +146,7 @@ def pressure_loads(trace: sp.csr_matrix, weighted: Basis) -> sp.csc_matrix:
 
 def condense(
     elastic: Elasticity,
-    pairing: Pairing,
+    weights: np.ndarray,
     trace: sp.csr_matrix,
     traction: sp.csr_matrix,
     basis: Basis,
@@ -152,7 +156,7 @@ def condense(
 
     Every rank calls.
     """
-    return influence(elastic, pairing, trace, basis).condensed(traction, holder)
+    return influence(elastic, weights, trace, basis).condensed(traction, holder)
 
 
 def condense_heat(conduction: Conduction, face: FaceHeat) -> InterfaceHeat:
@@ -160,16 +164,16 @@ def condense_heat(conduction: Conduction, face: FaceHeat) -> InterfaceHeat:
 
     The solutions follow when they are first needed, see `NodalResponses`. Every rank calls.
     """
-    first, second = (face_nodes(trace, conduction.spaces.comm) for trace in face.traces)
-    responses = NodalResponses(conduction, (first, second))
-    at_points = face.weights, face.basis, face.traces, face.shifts, face.partition
-    return InterfaceHeat(*at_points, (first, second), responses)
+    nodes = nodes_by_group(conduction.spaces, face.traces)
+    responses = NodalResponses(conduction, nodes)
+    at_points: dict[str, Any] = {f.name: getattr(face, f.name) for f in fields(FaceHeat)}
+    return InterfaceHeat(**at_points, nodes=nodes, responses=responses)
 
 
 def bath_matrix(
-    spaces: Spaces, traces, weights: np.ndarray, shifts: tuple[float, float]
+    spaces: Spaces, traces, weights: np.ndarray, shifts: tuple[np.ndarray, np.ndarray]
 ) -> PETSc.Mat:
-    """Matrix ``Σ E_iᵀ w s_i E_i`` of the bath at both faces, for `bulk.conduction`; collective."""
+    """Matrix ``Σ E_iᵀ w s_i E_i`` of the bath at the faces, for `bulk.conduction`; collective."""
     faces = zip(traces, shifts, strict=True)
     first, second = (transfer_matrix(spaces, trace, weights * shift) for trace, shift in faces)
     first.axpy(1.0, second, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)

@@ -1,4 +1,4 @@
-"""Heat exchange of the faces by one conduction problem of both bodies, without condensation.
+"""Heat exchange of the faces by one conduction problem of all bodies, without condensation.
 
 For many contact points, where matrices of all points do not fit into the memory. The conductance
 enters the matrix of conduction, ``K + (E1 - E2)ᵀ w h (E1 - E2)``. In perfect contact the heat that
@@ -32,7 +32,7 @@ _UNCONVERGED = (
 
 @dataclass(frozen=True)
 class CoupledHeat(FaceHeat):
-    """Heat conduction in both bodies, solved for each state of the contact.
+    """Heat conduction in the bodies, solved for each state of the contact.
 
     Attributes
     ----------
@@ -103,7 +103,7 @@ class CoupledExchange:
             T1, T2 = self._at_faces(self._load @ multipliers)
             return self._jump @ (T1 - T2) + self._resisted @ multipliers
 
-        conductance = np.maximum(self._direct, max(self._face.shifts))
+        conductance = np.maximum(self._direct, np.maximum(*self._face.shifts))
         schur = self._jump @ sp.diags(1 / conductance) @ self._crossing + self._resisted
         shape, factor = schur.shape, splu(schur.tocsc())
         found, failed = (cg if self._conduction.symmetric else gmres)(

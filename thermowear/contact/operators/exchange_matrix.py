@@ -1,13 +1,16 @@
-"""Matrices of the heat exchange of two faces: division of conductances, coupling of the nodes."""
+"""Matrices of the heat exchange of faces: division of conductances, coupling of the nodes."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg.lapack import dgetrf
+from scipy.linalg.lapack import dgetrf, dgetrs
+from scipy.sparse.linalg import splu
 
 from ...errors import ComputationError
 from .heat import NO_HEAT_SINK
@@ -20,12 +23,14 @@ _MAX_DIRECT_RATIO = 10.0
 _MAX_DIRECT_CONTRAST = 1e4
 """Largest conductance treated point by point, relative to that of the less conducting body: the
 rounding error of equal temperatures, times the conductance, is heat that enters this body."""
+_PAIR = 2
+"""Number of bodies up to which the matrices of the exchange are dense."""
 
 Division: TypeAlias = "tuple[np.ndarray, np.ndarray, np.ndarray]"
 """Parts of a conductance at the points, see `divided`."""
 
 
-def divided(conductance: np.ndarray, bodies: Sequence[float]) -> Division:
+def divided(conductance: np.ndarray, bodies: tuple[np.ndarray, np.ndarray]) -> Division:
     """Divide conductances (n,) into parts that are finite and well scaled.
 
     Up to a conductance ``k``, a multiple of that of the bodies, heat crosses point by point:
@@ -41,7 +46,7 @@ def divided(conductance: np.ndarray, bodies: Sequence[float]) -> Division:
     ----------
     conductance : ndarray, shape (n,)
         [W/(m² K)]
-    bodies : sequence of float
+    bodies : tuple of ndarray, shape (n,)
         Conductance of a layer of each body as thick as the support of a basis function.
 
     Returns
@@ -53,14 +58,15 @@ def divided(conductance: np.ndarray, bodies: Sequence[float]) -> Division:
     resistance : ndarray, shape (n,)
         Resistance ``η r η`` of the unknowns [m² K/W].
     """
-    limit = min(_MAX_DIRECT_RATIO * max(bodies), _MAX_DIRECT_CONTRAST * min(bodies))
+    better, worse = np.maximum(*bodies), np.minimum(*bodies)
+    limit = np.minimum(_MAX_DIRECT_RATIO * better, _MAX_DIRECT_CONTRAST * worse)
     direct = np.minimum(conductance, limit)
     passing_fraction, blocked_fraction = _parts(limit, conductance - direct)
     resistance = blocked_fraction * (passing_fraction + _REGULARITY * blocked_fraction) / limit
     return direct, passing_fraction, resistance
 
 
-def _parts(limit: float, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _parts(limit: np.ndarray, conductance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Fractions ``h/(h + k)`` and ``k/(h + k)`` of conductances from zero to infinity."""
     inverse = np.full(len(conductance), np.inf)
     np.divide(limit, conductance, out=inverse, where=conductance > 0)
@@ -71,7 +77,7 @@ def jump_scale(
     weights: np.ndarray,
     basis: sp.csr_array,
     values: tuple[sp.csr_array, sp.csr_array],
-    response: tuple[np.ndarray, np.ndarray],
+    response: Sequence[np.ndarray],
     division: Division,
 ) -> np.ndarray:
     """Scale of the functions of heat that crosses beyond the direct part, shape (m,).
@@ -84,8 +90,8 @@ def jump_scale(
     basis : csr_array, shape (n, m)
     values : tuple of csr_array, shape (n, n_f)
         Temperature of each face at the points per nodal value, see `FaceNodes`.
-    response : tuple of ndarray, shape (n_f, n_f)
-        See `InterfaceHeat`.
+    response : sequence of ndarray, shape (n_b, n_b)
+        Of the nodes of each body, see `InterfaceHeat`.
     division : Division
     """
     _, passing_fraction, resistance = division
@@ -93,9 +99,9 @@ def jump_scale(
     result, used = np.zeros(basis.shape[1]), np.unique(crossing.nonzero()[1])
     basis, crossing = basis.tocsc()[:, used], crossing[:, used]
     jumps = (basis.T @ sp.diags_array(weights * resistance) @ basis).diagonal()
-    for face, Φ in zip(values, response, strict=True):
-        heat = face.T @ crossing
-        jumps = jumps + heat.multiply(Φ @ heat).sum(axis=0)
+    heat = ((values[0] - values[1]).T @ crossing).tocsr()
+    for rows, Φ in zip(node_ranges([len(Φ) for Φ in response]), response, strict=True):
+        jumps = jumps + heat[rows].multiply(Φ @ heat[rows]).sum(axis=0)
     result[used] = 1 / np.sqrt(jumps)
     return result
 
@@ -111,9 +117,9 @@ def coupling_matrix(
     functions: sp.csr_array,
     values: tuple[sp.csr_array, sp.csr_array],
     division: Division,
-    shifts: tuple[float, float],
+    shifts: tuple[np.ndarray, np.ndarray],
 ) -> sp.csr_array:
-    """Matrix N: heat into the nodes of both faces, and weak temperature jumps.
+    """Matrix N: heat into the nodes of the faces, and weak temperature jumps.
 
     Linear in the division of the conductances and in the heat transfer to the bath.
 
@@ -123,50 +129,65 @@ def coupling_matrix(
         See `jump_scale`.
     functions : csr_array, shape (n, n_z)
         See `scaled_functions`.
-    shifts : tuple of float
+    shifts : tuple of ndarray, shape (n,)
         Heat transfer of each face to the bath [W/(m² K)].
     """
-    (direct, passing_fraction, resistance), (P1, P2), w = division, values, weights
-    bath_1, bath_2 = (sp.diags_array(w * (shift - direct)) for shift in shifts)
-    across = sp.diags_array(w * direct)
-    C1, C2 = (P.T @ sp.diags_array(w * passing_fraction) @ functions for P in values)
+    (direct, passing_fraction, resistance), w = division, weights
+    between = values[0] - values[1]
+    baths = (P.T @ sp.diags_array(w * s) @ P for P, s in zip(values, shifts, strict=True))
+    nodal = sum(baths, -(between.T @ sp.diags_array(w * direct) @ between))
+    crossing = between.T @ sp.diags_array(w * passing_fraction) @ functions
     resisted = functions.T @ sp.diags_array(w * resistance) @ functions
-    return sp.block_array(
-        [
-            [P1.T @ bath_1 @ P1, P1.T @ across @ P2, C1],
-            [P2.T @ across @ P1, P2.T @ bath_2 @ P2, -C2],
-            [C1.T, -C2.T, resisted],
-        ],
-        format="csr",
-    )
+    return sp.block_array([[nodal, crossing], [crossing.T, resisted]], format="csr")
 
 
-def factorised(
-    coupling: sp.csr_array, response: tuple[np.ndarray, np.ndarray]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Triangular factors with pivots of the unknowns: ``I - Φ N``, and ``-N`` of the jumps.
+def node_ranges(counts: Sequence[int]) -> list[slice]:
+    """Ranges of the nodes of each body among those of all faces."""
+    return [slice(int(a), int(b)) for a, b in pairwise([0, *np.cumsum(counts)])]
+
+
+def factorised(coupling: sp.csr_array, response: Sequence[np.ndarray]) -> Callable:
+    """Solution with the factors of the unknowns: ``I - Φ N``, and ``-N`` of the jumps.
+
+    As `dgetrs` with its first arguments given. Bodies are coupled to their neighbours only: the
+    factors of several pairs are sparse.
 
     Parameters
     ----------
     coupling : csr_array
         See `coupling_matrix`.
-    response : tuple of ndarray, shape (n_f, n_f)
-        See `InterfaceHeat`.
+    response : sequence of ndarray, shape (n_b, n_b)
+        Of the nodes of each body, see `InterfaceHeat`.
 
     Raises
     ------
     ComputationError
         If a heated body has no heat sink.
     """
-    Φ1, Φ2 = response
-    start, end = len(Φ1), len(Φ1) + len(Φ2)
+    several = len(response) > _PAIR
+    return _sparse_factor(coupling, response) if several else _dense_factor(coupling, response)
+
+
+def _sparse_factor(coupling: sp.csr_array, response: Sequence[np.ndarray]) -> Callable:
+    end = sum(len(Φ) for Φ in response)
+    coupled = sp.block_diag(response, format="csr") @ coupling[:end]
+    lines = sp.eye_array(end, coupling.shape[1], format="csr") - coupled
+    try:
+        factor = splu(sp.csc_matrix(sp.vstack([lines, -coupling[end:]])))
+    except RuntimeError:  # exactly singular
+        raise ComputationError(NO_HEAT_SINK) from None
+    return lambda right, trans=0: (factor.solve(right, "NT"[trans]), 0)
+
+
+def _dense_factor(coupling: sp.csr_array, response: Sequence[np.ndarray]) -> Callable:
+    end = sum(len(Φ) for Φ in response)
     matrix = np.empty(coupling.shape, order="F")
-    matrix[:start] = Φ1 @ coupling[:start]
-    matrix[start:end] = Φ2 @ coupling[start:end]
+    for rows, Φ in zip(node_ranges([len(Φ) for Φ in response]), response, strict=True):
+        matrix[rows] = Φ @ coupling[rows]
     matrix[end:] = coupling[end:].toarray()
     np.negative(matrix, out=matrix)
     matrix[np.arange(end), np.arange(end)] += 1.0
     factor, pivots, singular = dgetrf(matrix, overwrite_a=1)
     if singular:
         raise ComputationError(NO_HEAT_SINK)
-    return factor, pivots
+    return partial(dgetrs, factor, pivots)

@@ -72,7 +72,7 @@ class ReferenceExchange(HeatExchange):
     @cached_property
     def rows(self) -> SingleResponses:
         """Rows of G, as columns."""
-        if self.face.symmetric:
+        if self.face.responses.symmetric:
             return self.columns
         return SingleResponses(self.transposed_response, self.coupling.shape[0])
 
@@ -108,7 +108,7 @@ class ChangedExchange(HeatExchange):
             functions[points],
             (face.values[0][points], face.values[1][points]),
             (direct, passing_fraction, resistance),
-            (0.0, 0.0),
+            (np.zeros(len(points)),) * 2,
         )
         rows, columns = self._difference.nonzero()
         self.near = np.union1d(rows, columns)

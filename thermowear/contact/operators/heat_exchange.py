@@ -2,8 +2,8 @@
 
 With the values P of the shape functions at the contact points, the rise of a face is
 ``T = T⁰ + P θ`` and the heat into its nodes ``Q = Pᵀ w q``; conduction condensed to the nodes of
-the face is ``θ = Φ Q``. Heat crosses where faces differ in temperature, so that Q depends on θ of
-both faces by a sparse matrix. The points themselves only carry values.
+the faces of a body is ``θ = Φ Q``. Heat crosses where faces differ in temperature, so that Q
+depends on θ of all bodies by a sparse matrix. The points themselves only carry values.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from functools import cached_property
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.linalg.lapack import dgetrs
 
 from ...parallel import sum_over_ranks
 from .exchange_matrix import (
@@ -23,6 +22,7 @@ from .exchange_matrix import (
     divided,
     factorised,
     jump_scale,
+    node_ranges,
     scaled_functions,
 )
 from .face_nodes import FaceNodes
@@ -42,77 +42,76 @@ class FaceHeat:
     basis : ndarray or csr_array, shape (n, m)
         Basis Ψ of the exchanged heat in perfect contact.
     traces : tuple of csr_matrix, shape (n_owned, n)
-        Transposed trace Eᵀ of each face.
-    shifts : tuple of float
+        Transposed traces Eᵀ of the first and of the second faces of the contacts.
+    shifts : tuple of ndarray, shape (n,)
         Heat transfer of each face to a bath at ambient, of the order of its body, included in the
         factorised conduction and subtracted again here [W/(m² K)].
+    layers : tuple of ndarray, shape (n,)
+        Conductance of a layer of each body as thick as the support of a basis function
+        [W/(m² K)].
     partition : float or ndarray, shape (n,)
-        Fraction of the friction heat released on body 1.
+        Fraction of the friction heat released on the first face.
     """
 
     weights: np.ndarray
     basis: Basis
     traces: tuple[sp.csr_matrix, sp.csr_matrix]
-    shifts: tuple[float, float]
+    shifts: tuple[np.ndarray, np.ndarray]
+    layers: tuple[np.ndarray, np.ndarray]
     partition: float | np.ndarray
 
     def nodal_heat(self, state: ThermalState, bath: bool) -> np.ndarray:
         """Nodal heat of the contact [W], owned rows; heat of the bath included on request."""
-        shifts = self.shifts if bath else (0.0, 0.0)
-        faces = zip(self.traces, shifts, state.rise, state.flux, strict=True)
+        faces = zip(self.traces, self.shifts, state.rise, state.flux, strict=True)
         first, second = (
-            trace @ (self.weights * (flux + shift * rise)) for trace, shift, rise, flux in faces
+            trace @ (self.weights * (flux + bath * shift * rise))
+            for trace, shift, rise, flux in faces
         )
         return first + second
 
     def state(
         self, rise: tuple[np.ndarray, np.ndarray], friction_heat: np.ndarray, crossing: np.ndarray
     ) -> ThermalState:
-        """State by the rises [K], and friction heat and heat from body 2 to 1 (n,) [W/m²]."""
-        f = self.partition
-        return ThermalState(
-            rise, (f * friction_heat + crossing, (1 - f) * friction_heat - crossing)
-        )
+        """State by the rises [K], and friction heat and heat from face 2 to 1 (n,) [W/m²]."""
+        into_1 = self.partition * friction_heat + crossing
+        return ThermalState(rise, (into_1, friction_heat - into_1))
 
     def divided(self, conductance: np.ndarray) -> Division:
         """Divide conductances (n,) into parts that are finite and well scaled."""
-        return divided(conductance, [shift * self.basis.shape[1] for shift in self.shifts])
+        return divided(conductance, self.layers)
 
 
 @dataclass(frozen=True)
 class InterfaceHeat(FaceHeat):
-    """Heat conduction in both bodies, condensed to the nodes of their faces.
+    """Heat conduction in the bodies, condensed to the nodes of their contact faces.
 
     Attributes
     ----------
     nodes : tuple of FaceNodes
+        Nodes of each body, one after the other.
     responses : NodalResponses
     """
 
-    nodes: tuple[FaceNodes, FaceNodes]
+    nodes: tuple[FaceNodes, ...]
     responses: NodalResponses
 
     @property
-    def response(self) -> tuple[np.ndarray, np.ndarray]:
-        """Φ: nodal rise per nodal heat on each face, the bath included, shape (n_f, n_f) [K/W].
+    def response(self) -> tuple[np.ndarray, ...]:
+        """Φ: nodal rise per nodal heat in each body, the bath included, shape (n_b, n_b) [K/W].
 
         Every rank calls.
         """
         return self.responses.each
 
-    @property
-    def symmetric(self) -> bool:
-        """True if these are symmetric."""
-        return self.responses.symmetric
-
     def exchange(self, conductance: np.ndarray) -> HeatExchange:
-        """Couple the faces by a conductance (n,), infinite in perfect contact, see `divided`."""
+        """Couple the faces by a conductance (n,), infinite in perfect contact."""
         return HeatExchange(self, conductance)
 
-    @property
+    @cached_property
     def values(self) -> tuple[sp.csr_array, sp.csr_array]:
         """Temperatures of both faces at the points per nodal value, shape (n, n_f)."""
-        return self.nodes[0].values, self.nodes[1].values
+        one, two = (sp.hstack(side) for side in zip(*(n.values for n in self.nodes), strict=True))
+        return one.tocsr(), two.tocsr()
 
     @cached_property
     def functions(self) -> sp.csr_array:
@@ -121,26 +120,26 @@ class InterfaceHeat(FaceHeat):
 
     @cached_property
     def released(self) -> sp.csr_array:
-        """Nodal heat into both faces per friction heat at the points, (n_f1 + n_f2, n) [m²]."""
+        """Nodal heat per friction heat at the points, shape (n_f, n) [m²]."""
         f = self.partition * np.ones(len(self.weights))
         shares = zip(self.values, (f, 1 - f), strict=True)
-        parts = [values.T @ sp.diags_array(self.weights * share) for values, share in shares]
-        return sp.vstack(parts).tocsr()
+        first, second = (v.T @ sp.diags_array(self.weights * share) for v, share in shares)
+        return (first + second).tocsr()
 
     def on_nodes(self, heat: np.ndarray) -> np.ndarray:
-        """Owned nodal heat (n_owned, k) of the bodies from that on both faces (n_f1 + …, k)."""
-        n_owned, (one, two) = self.traces[0].shape[0], self.nodes
-        first, second = heat[: one.count], heat[one.count : one.count + two.count]
-        return one.spread(first, n_owned) + two.spread(second, n_owned)
+        """Owned nodal heat (n_owned, k) of the bodies from that on the faces (n_f + …, k)."""
+        n_owned, ranges = self.traces[0].shape[0], node_ranges([n.count for n in self.nodes])
+        pairs = zip(self.nodes, ranges, strict=True)
+        return np.sum([nodes.spread(heat[own], n_owned) for nodes, own in pairs], axis=0)
 
 
 class HeatExchange:
     """Faces coupled by a conductance.
 
-    The unknowns are the nodal rises of both faces by the heat at the contact, and coefficients of
-    the heat that crosses beyond the direct part, see `exchange_matrix.divided`::
+    The unknowns are the nodal rises by the heat at the contact, and coefficients of the heat that
+    crosses beyond the direct part, see `exchange_matrix.divided`::
 
-        x = (θ1, θ2, z),   Q = b + N x,   θ = Φ Q,   0 = b_z + (N x)_z,   x = G b
+        x = (θ, z),   Q = b + N x,   θ = Φ Q,   0 = b_z + (N x)_z,   x = G b
 
     Parameters
     ----------
@@ -156,7 +155,8 @@ class HeatExchange:
 
     def __init__(self, face: InterfaceHeat, conductance: np.ndarray):
         self.face, self.division = face, face.divided(conductance)
-        self._splits = np.cumsum([nodes.count for nodes in face.nodes])
+        self._ranges = node_ranges([nodes.count for nodes in face.nodes])
+        self._count = self._ranges[-1].stop
         self._set_up()
 
     def _set_up(self) -> None:
@@ -169,7 +169,7 @@ class HeatExchange:
         self.coupling = coupling_matrix(
             face.weights, functions, face.values, self.division, face.shifts
         )
-        self._factor = factorised(self.coupling, face.response)
+        self._solve = factorised(self.coupling, face.response)
 
     @cached_property
     def _crossing(self) -> sp.csr_array:
@@ -183,10 +183,10 @@ class HeatExchange:
         T1, T2 = baseline.rise
         return self.face.state((T1 + changes[0], T2 + changes[1]), friction_heat, crossing)
 
-    def opened(self, per_heat: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-        """Functionals (weak gaps, say) per load, from those per nodal heat of each face, (k, n_f).
+    def opened(self, per_heat: Sequence[np.ndarray]) -> np.ndarray:
+        """Functionals (weak gaps, say) per load, from those per nodal heat of each body, (k, n_b).
 
-        Shape (k, n_f1 + n_f2 + n_z), see `loads`.
+        Shape (k, n_f + n_z), see `loads`.
         """
         own = np.hstack([*per_heat, np.zeros((len(per_heat[0]), self._crossing.shape[1]))])
         return own + self.transposed_response(self.coupling.T @ own.T).T
@@ -211,14 +211,15 @@ class HeatExchange:
         (T1, T2), face = baseline.rise, self.face
         w, (s1, s2), across = face.weights, face.shifts, self.division[0] * (T2 - T1)
         one, two = (values.T for values in face.values)
-        heat = one @ (w * (s1 * T1 + across)), two @ (w * (s2 * T2 - across))
-        return loads + np.concatenate([*heat, self._crossing.T @ (w * (T1 - T2))])
+        heat = one @ (w * (s1 * T1 + across)) + two @ (w * (s2 * T2 - across))
+        return loads + np.concatenate([heat, self._crossing.T @ (w * (T1 - T2))])
 
     def solved(self, friction_heat: np.ndarray, baseline: BaselineResponse | None = None):
-        """Changes of the rises of both faces at the points, and heat from body 2 to body 1."""
-        θ1, θ2, z = self._parts(self.response(self.loads(friction_heat, baseline)))
+        """Changes of the rises of both faces at the points, and heat from face 2 to face 1."""
+        found = self.response(self.loads(friction_heat, baseline))
+        θ, z = found[: self._count], found[self._count :]
         one, two = self.face.values
-        changes = one @ θ1, two @ θ2
+        changes = one @ θ, two @ θ
         difference = changes[1] - changes[0]
         if baseline is not None:
             difference = difference + baseline.rise[1] - baseline.rise[0]
@@ -226,22 +227,20 @@ class HeatExchange:
 
     def response(self, loads: np.ndarray) -> np.ndarray:
         """Unknowns ``x = G b`` by loads b, by columns."""
-        (first, second, jump), (Φ1, Φ2) = self._parts(loads), self.face.response
-        found, _ = dgetrs(*self._factor, np.concatenate([Φ1 @ first, Φ2 @ second, jump]))
+        found, _ = self._solve(self._risen(self.face.response, loads))
         return found.reshape(loads.shape)
 
     def transposed_response(self, values: np.ndarray) -> np.ndarray:
         """Products ``Gᵀ values``, by columns."""
-        if self.face.symmetric:
+        if self.face.responses.symmetric:
             return self.response(values)
-        first, second, jump = self._parts(dgetrs(*self._factor, values, trans=1)[0])
-        Φ1, Φ2 = self.face.response
-        return np.concatenate([Φ1.T @ first, Φ2.T @ second, jump])
+        adjoint, _ = self._solve(values, trans=1)
+        return self._risen([Φ.T for Φ in self.face.response], adjoint)
 
-    def _parts(self, values):
-        """Rows of both faces and of the jumps."""
-        start, end = self._splits
-        return values[:start], values[start:end], values[end:]
+    def _risen(self, response: Sequence[np.ndarray], loads: np.ndarray) -> np.ndarray:
+        """Rises of uncoupled bodies by nodal heat; the rows of the jumps are kept."""
+        ranges = zip(self._ranges, response, strict=True)
+        return np.concatenate([*(Φ @ loads[rows] for rows, Φ in ranges), loads[self._count :]])
 
 
 @dataclass(frozen=True)
@@ -251,9 +250,9 @@ class CoupledDistortion:
     Attributes
     ----------
     exchange : HeatExchange
-    per_load : ndarray, shape (m, n_f1 + n_f2 + n_z)
+    per_load : ndarray, shape (m, n_f + n_z)
         Weak gap per load of the exchange, or of its reference.
-    change : tuple of ndarray or None, shape (m, k) and (k, n_f1 + n_f2 + n_z)
+    change : tuple of ndarray or None, shape (m, k) and (k, n_f + n_z)
         Factors of the difference from the reference.
     """
 

@@ -1,4 +1,4 @@
-"""Response of the nodes of both contact faces to heat into each of them."""
+"""Response of the nodes of the contact faces of each body to heat into each of them."""
 
 from __future__ import annotations
 
@@ -20,11 +20,12 @@ class NodalResponses:
     Parameters
     ----------
     conduction : Conduction
-    faces : tuple of FaceNodes
+    nodes : tuple of FaceNodes
+        Nodes of each body.
     """
 
-    def __init__(self, conduction: Conduction, faces: tuple[FaceNodes, FaceNodes]):
-        self._conduction, self._faces = conduction, faces
+    def __init__(self, conduction: Conduction, nodes: tuple[FaceNodes, ...]):
+        self._conduction, self._nodes = conduction, nodes
 
     @property
     def symmetric(self) -> bool:
@@ -32,22 +33,22 @@ class NodalResponses:
         return self._conduction.symmetric
 
     @cached_property
-    def each(self) -> tuple[np.ndarray, np.ndarray]:
-        """Φ: nodal rise per nodal heat on each face, shape (n_f, n_f) [K/W]. Every rank calls."""
+    def each(self) -> tuple[np.ndarray, ...]:
+        """Φ: nodal rise per nodal heat in each body, shape (n_b, n_b) [K/W]. Every rank calls."""
         conduction = self._conduction.for_columns()
-        first, second = (_nodal_response(conduction, face) for face in self._faces)
+        found = tuple(_nodal_response(conduction, nodes) for nodes in self._nodes)
         conduction.release()
-        return first, second
+        return found
 
 
 def _nodal_response(conduction: Conduction, face: FaceNodes) -> np.ndarray:
-    """Rise of the nodes of a face per heat into each of them. Every rank calls."""
-    spaces, index = conduction.spaces, conduction.spaces.body_of(face.rows)
-    body, rows = conduction.in_body(index), face.rows - spaces.starts[index]
-    nodes, n_owned = face.first + np.arange(len(rows)), len(body.fixed)
+    """Rise of the nodes of a group per heat into each of them. Every rank calls."""
+    spaces, index = conduction.spaces, conduction.spaces.group_of(face.rows)
+    group, rows = conduction.in_group(index), spaces.within(index, face.rows)
+    nodes, n_owned = face.first + np.arange(len(rows)), len(group.fixed)
     heat = sp.csc_matrix((np.ones(len(rows)), (rows, nodes)), shape=(n_owned, face.count))
     result = np.empty((face.count, face.count), order="F")
     for columns in blocks(face.count, spaces.dim):
-        rises = body.respond(heat[:, columns].tocsr())
+        rises = group.respond(heat[:, columns].tocsr())
         result[:, columns] = np.vstack(spaces.comm.allgather(rises[rows]))
     return result

@@ -8,6 +8,7 @@ They jump at the borders of materials that wear by different laws, as the steady
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -16,6 +17,7 @@ import scipy.sparse as sp
 from scipy.special import comb, factorial
 
 from ...lagrange import lattice
+from ..search.contacts import Contacts
 from ..search.face import Surface
 from ..search.pairing import Pairing
 
@@ -99,6 +101,21 @@ def pressure_basis(pairing: Pairing, degree: int) -> Basis:
     return basis if isinstance(side.face, Surface) else basis.toarray()
 
 
+def joined_bases(each: Sequence[Basis]) -> Basis:
+    """Basis at the points of several interfaces, one after the other; sparse if there are several.
+
+    Each function belongs to one interface.
+    """
+    return each[0] if len(each) == 1 else sp.csr_array(sp.block_diag(each, format="csr"))
+
+
+def functions_by_interface(contacts: Contacts, basis: Basis) -> np.ndarray:
+    """Number of the pressure functions of the interface that each point lies on, shape (n,)."""
+    if len(contacts.each) == 1:
+        return np.full(basis.shape[0], basis.shape[1])
+    return contacts.per_point([len(np.unique(basis[own].nonzero()[1])) for own in contacts.ranges])
+
+
 def jumps(pairing: Pairing) -> bool:
     """True if materials that wear by different laws adjoin on a contact face."""
     return bool(np.ptp(pairing.groups, axis=1).any())
@@ -130,7 +147,7 @@ def _bernstein(degree: int, t: np.ndarray) -> np.ndarray:
     return comb(degree, k) * t[:, None] ** k * (1 - t[:, None]) ** (degree - k)
 
 
-def unresolved_gap(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basis: Basis):
+def unresolved_gap(gap: np.ndarray, pressing: np.ndarray, contacts: Contacts, basis: Basis):
     """Gap component orthogonal to the pressure space, on fully closed facets.
 
     Weak contact closes the mean of the gap with each basis function, not the gap at each point.
@@ -142,7 +159,7 @@ def unresolved_gap(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basi
     gap : ndarray, shape (n,)
         Gap at the contact points [m].
     pressing : ndarray of bool, shape (n,)
-    pairing : Pairing
+    contacts : Contacts
     basis : ndarray or csr_array, shape (n, m)
         Ψ, see `pressure_basis`.
 
@@ -151,11 +168,11 @@ def unresolved_gap(gap: np.ndarray, pressing: np.ndarray, pairing: Pairing, basi
     ndarray, shape (n,)
         Component whose weak values ``Ψᵀ w v`` vanish [m].
     """
-    facet = pairing.sides[0].facet
+    facet = contacts.facet
     closed = ~np.isin(facet, facet[~pressing])
     used = basis[closed].sum(axis=0) > 0.0
     on_closed = basis[closed][:, used]
-    space = PressureSpace(on_closed, scaled(pairing.weights[closed], on_closed))
+    space = PressureSpace(on_closed, scaled(contacts.weights[closed], on_closed))
     result = np.zeros_like(gap)
     if closed.any():
         result[closed] = gap[closed] - on_closed @ space.projected(gap[closed])

@@ -1,13 +1,15 @@
-"""Motion of body 1: its sliding over body 2, and the rigid modes and loads of its holder."""
+"""Sliding of the first body of a contact, and the rigid modes and loads of the holders."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 
 from ...laws.motions import RigidMotion
-from ..search.pairing import Pairing
+from ...laws.time_course import LoadHistory
+from ..search.contacts import Contacts
 
 _ZERO_LENGTH = 1e-9
 """Relative length, by the largest vector, below which a vector is rounding noise."""
@@ -15,7 +17,7 @@ _ZERO_LENGTH = 1e-9
 
 @dataclass(frozen=True)
 class RigidMode:
-    """Rigid motion of the holder with a given load or a given amplitude.
+    """Rigid motion of a holder with a given load or a given amplitude.
 
     Attributes
     ----------
@@ -25,13 +27,19 @@ class RigidMode:
     amplitude : float or None
         Given motion [m or rad].
     dead : float
-        Constant generalised force on body 1 that does not come from the holder [N or N m].
+        Constant generalised force on its bodies that does not come from the holder [N or N m].
+    bodies : tuple of int
+        Indices of the bodies that move.
+    history : LoadHistory or None
+        Time history of the load.
     """
 
     motion: RigidMotion
     load: float | None = None
     amplitude: float | None = None
     dead: float = 0.0
+    bodies: tuple[int, ...] = (0,)
+    history: LoadHistory | None = None
 
     def __post_init__(self):
         if (self.load is None) == (self.amplitude is None):
@@ -40,12 +48,12 @@ class RigidMode:
 
 @dataclass(frozen=True)
 class RigidHolder:
-    """Rigid holder of body 1.
+    """Rigid holders of all bodies.
 
     Attributes
     ----------
     rigid_modes : tuple of RigidMode
-        Its rigid modes: k free ones, and those with given motion.
+        Their rigid modes: k free ones, and those with given motion.
     closure : ndarray, shape (n, n_modes)
         Matrix R: gap closure at the points per unit of each mode.
     force_response : ndarray, shape (n, n_modes)
@@ -77,9 +85,14 @@ class RigidHolder:
 
     @property
     def load(self) -> np.ndarray:
-        """Generalised force of the holder on the free motions, shape (k,) [N or N m]."""
+        """Generalised forces of the holders on the free motions, shape (k,) [N or N m]."""
         given = [mode.load for mode in self.rigid_modes if mode.load is not None]
         return np.array(given, dtype=float)
+
+    @property
+    def histories(self) -> list[LoadHistory | None]:
+        """Time histories of these forces, k of them."""
+        return [mode.history for mode in self.rigid_modes if mode.load is not None]
 
     @property
     def dead(self) -> np.ndarray:
@@ -99,23 +112,30 @@ class RigidHolder:
 
 
 def hold(
-    pairing: Pairing,
+    contacts: Contacts,
     traction_direction: np.ndarray,
     rigid_modes: list[RigidMode] | tuple[RigidMode, ...],
 ) -> RigidHolder:
-    """Build the holder from its rigid modes.
+    """Build the holders from their rigid modes.
+
+    A motion of the second body of a contact opens where the same one of the first body closes.
 
     Parameters
     ----------
-    pairing : Pairing
+    contacts : Contacts
     traction_direction : ndarray, shape (n, gdim)
         ``n + mu e``, see `pairing`.
     rigid_modes : sequence of RigidMode
     """
-    points = pairing.on_body_1
-    moved = np.array([mode.motion.at(points) for mode in rigid_modes]).reshape(-1, *points.shape)
-    closure = np.einsum("kni,ni->nk", moved, pairing.normals)
-    force_response = np.einsum("kni,ni->nk", moved, traction_direction)
+    closure, force_response = np.zeros((2, len(contacts.weights), len(rigid_modes)))
+    for k, mode in enumerate(rigid_modes):
+        for body in mode.bodies:
+            for side, points in contacts.of_body(body):
+                at = (contacts.on_body_1, contacts.on_body_2)[side][points]
+                moved = (1.0, -1.0)[side] * mode.motion.at(at)
+                closure[points, k] += np.einsum("ni,ni->n", moved, contacts.normals[points])
+                along = traction_direction[points]
+                force_response[points, k] += np.einsum("ni,ni->n", moved, along)
     return RigidHolder(tuple(rigid_modes), closure, force_response)
 
 
@@ -138,7 +158,10 @@ class Sliding:
     across: np.ndarray
 
     def traction_direction(
-        self, normals: np.ndarray, friction: float | np.ndarray, transverse: float
+        self,
+        normals: np.ndarray,
+        friction: float | np.ndarray,
+        transverse: float | np.ndarray,
     ) -> np.ndarray:
         """Direction ``n + mu e + mu_d e_2``; the traction on body 1 is minus the pressure times it.
 
@@ -150,7 +173,7 @@ class Sliding:
         normals : ndarray, shape (n, gdim)
         friction : float or ndarray, shape (n, 1)
             Coefficient of friction mu.
-        transverse : float
+        transverse : float or ndarray, shape (n, 1)
             Transverse coefficient mu_d.
 
         Returns
@@ -161,7 +184,7 @@ class Sliding:
 
 
 def sliding(
-    velocity: np.ndarray, normals: np.ndarray, load_direction: tuple[float, ...]
+    velocity: np.ndarray, normals: np.ndarray, load_direction: Sequence[float] | np.ndarray
 ) -> Sliding:
     """Split the sliding velocity into speed and directions.
 
@@ -171,7 +194,7 @@ def sliding(
         Velocity of body 1 relative to body 2 [m/s], see `bulk.kinematics`.
     normals : ndarray, shape (n, gdim)
         Outward unit normals of body 1.
-    load_direction : tuple of float
+    load_direction : array_like, shape (gdim,)
         Unit vector of the load direction of body 1.
     """
     gdim = normals.shape[1]
@@ -181,6 +204,14 @@ def sliding(
     down = _tangential(np.broadcast_to(_spatial(np.array([load_direction])), n.shape), n)
     down = down - np.einsum("ni,ni->n", down, along)[:, None] * along
     return Sliding(speed, along[:, :gdim], _unit(down, 1.0)[:, :gdim])
+
+
+def joined_sliding(each: Sequence[Sliding]) -> Sliding:
+    """Sliding at the points of several interfaces, one after the other."""
+    if len(each) == 1:
+        return each[0]
+    columns = (np.concatenate([getattr(s, f.name) for s in each]) for f in fields(Sliding))
+    return Sliding(*columns)
 
 
 def _spatial(vectors: np.ndarray) -> np.ndarray:

@@ -27,6 +27,7 @@ import scipy.sparse as sp
 
 from ...bulk.mechanics.elasticity import Elasticity
 from ...parallel import sum_over_ranks
+from ..search.contacts import Contacts
 from ..search.pairing import Pairing
 from .pressure import PressureSpace, scaled
 from .traces import vector_trace
@@ -134,7 +135,8 @@ def condense_tangential(
     """
     weighted = scaled(pairing.weights, basis)
     directions = [pairing.normals, *-tangents(pairing.normals)]
-    traces = [vector_trace(elastic.spaces, pairing, direction) for direction in directions]
+    contacts = Contacts((pairing,))
+    traces = [vector_trace(elastic.spaces, contacts, direction) for direction in directions]
     sparse = sp.csr_matrix(weighted)
     influence = elastic.solve(sp.hstack([trace @ sparse for trace in traces], format="csr"))
     comm = elastic.bodies.comm

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from petsc4py import PETSc
 
@@ -24,36 +25,40 @@ from .exchange_update import ChangedExchange
 from .face_nodes import FaceNodes
 from .heat_exchange import CoupledDistortion, HeatExchange, opened_by
 
+Columns: TypeAlias = "slice | np.ndarray"
+
 _STORED = 0.05
 """Part of the available memory that the response of all temperatures may take."""
 
 
 @dataclass(frozen=True)
-class BodyColumns:
-    """Solutions of one body for a range of pressure functions.
+class GroupColumns:
+    """Solutions of a group of bodies for a range of pressure functions.
 
     Attributes
     ----------
-    body : int
-        Index of the body.
-    columns : slice
-        Range of pressure functions.
+    group : int
+        Index of the group.
+    columns : slice or ndarray of int
+        Pressure functions.
     displacements : ndarray, shape (n_own, width)
-        Displacements of the body [m per coefficient].
+        Displacements of the group [m per coefficient].
     per_rise : list of ndarray, shape (n_own of the temperature, width)
-        Weak gap per nodal rise of the body, one for each thermal load matrix [m³/K].
+        Weak gap per nodal rise of the group, one for each thermal load matrix [m³/K].
     """
 
-    body: int
-    columns: slice
+    group: int
+    columns: Columns
     displacements: np.ndarray
     per_rise: list[np.ndarray]
 
 
 def elastic_columns(
     elastic: Elasticity, loads: sp.csc_matrix, matrices: Sequence[ThermalForces] = ()
-) -> Iterator[BodyColumns]:
-    """Solve for sparse nodal loads (n_owned, m), body by body. Every rank calls.
+) -> Iterator[GroupColumns]:
+    """Solve for sparse nodal loads (n_owned, m), group by group, where they load a group.
+
+    Every rank calls.
 
     Parameters
     ----------
@@ -62,15 +67,34 @@ def elastic_columns(
     matrices : sequence of ThermalForces
         Thermal load matrices.
     """
-    parts = elastic.spaces.split(loads.tocsr())
-    for index, (body, own) in enumerate(zip(elastic.each, parts, strict=True)):
-        transposed = [matrix.each[index].transpose(PETSc.Mat()) for matrix in matrices]
-        rows, by_columns = Spaces((body.space,)).total, sp.csc_matrix(own)
-        with body.solver_of_columns() as solve:
-            for columns in blocks(loads.shape[1], elastic.bodies.dim, rows):
+    by_rows, bodies_of = loads.tocsr(), elastic.bodies
+    for index, (group, bodies) in enumerate(
+        zip(elastic.groups, elastic.spaces.groups, strict=True)
+    ):
+        transposed = [[m.each[k].transpose(PETSc.Mat()) for k in bodies] for m in matrices]
+        by_columns = sp.csc_matrix(by_rows[elastic.spaces.rows(*bodies)])
+        size = bodies_of.dim, group.spaces.total
+        with group.solver_of_columns() as solve:
+            for columns in _loading(by_columns, bodies_of.comm, *size):
                 displacements = solve(by_columns[:, columns].tocsr())
-                products = [_product(matrix, displacements) for matrix in transposed]
-                yield BodyColumns(index, columns, displacements, products)
+                split = group.spaces.split(displacements)
+                products = [
+                    np.vstack([_product(*pair) for pair in zip(each, split, strict=True)])
+                    for each in transposed
+                ]
+                yield GroupColumns(index, columns, displacements, products)
+
+
+def _loading(loads: sp.csc_matrix, comm, dim: int, rows: int = 0) -> Iterator[Columns]:
+    """Blocks of the columns that load a body, on any rank; a body has those of its own contacts.
+
+    Every rank calls.
+    """
+    used = np.flatnonzero(sum_over_ranks(comm, np.diff(loads.indptr)))
+    for block in blocks(len(used), dim, rows):
+        own = used[block]
+        first, end = int(own[0]), int(own[-1]) + 1
+        yield slice(first, end) if end - first == len(own) else own
 
 
 def _product(matrix: PETSc.Mat, columns: np.ndarray) -> np.ndarray:
@@ -158,8 +182,8 @@ class ThermalOpening:
 
     def by_columns(
         self, spaces: Spaces, slopes: Sequence[np.ndarray] = ()
-    ) -> Iterator[tuple[int, slice, np.ndarray]]:
-        """Weak gap per nodal rise of a body (n_own, width), with the range of pressure functions.
+    ) -> Iterator[tuple[int, Columns, np.ndarray]]:
+        """Weak gap per nodal rise of a group (n_own, width), with its pressure functions.
 
         The rises of the matrices after the first are `slopes` (n_owned,) times that of the first.
         Every rank calls.
@@ -170,15 +194,19 @@ class ThermalOpening:
             Of the temperatures.
         slopes : sequence of ndarray
         """
-        slopes_in = list(zip(*map(spaces.split, slopes), strict=True)) or [()] * len(spaces.each)
+        rows = [spaces.rows(*bodies) for bodies in self.elastic.spaces.groups]
+        slopes_in = [[slope[own] for slope in slopes] for own in rows]
         if self.per_rise:
-            for index, split in enumerate(zip(*map(spaces.split, self.per_rise), strict=True)):
-                for columns in blocks(self.loads.shape[1], self.elastic.bodies.dim):
-                    parts = [response[:, columns] for response in split]
-                    yield index, columns, _combined(parts, slopes_in[index])
+            loads, bodies = self.loads.tocsr(), self.elastic.bodies
+            of_loads = [self.elastic.spaces.rows(*own) for own in self.elastic.spaces.groups]
+            for group, own in enumerate(rows):
+                by_columns = sp.csc_matrix(loads[of_loads[group]])
+                for columns in _loading(by_columns, bodies.comm, bodies.dim):
+                    parts = [response[own][:, columns] for response in self.per_rise]
+                    yield group, columns, _combined(parts, slopes_in[group])
             return
         for found in elastic_columns(self.elastic, self.loads, self.matrices[: 1 + len(slopes)]):
-            yield found.body, found.columns, _combined(found.per_rise, slopes_in[found.body])
+            yield found.group, found.columns, _combined(found.per_rise, slopes_in[found.group])
 
     def _forces(self, rises: Iterable[np.ndarray]) -> np.ndarray:
         pairs = zip(self.matrices, rises, strict=False)
@@ -198,11 +226,11 @@ class ThermalDistortion:
 
     Attributes
     ----------
-    per_heat : tuple of ndarray, shape (m, n_f)
-        Weak gap per nodal heat into each body at its face, bath included [m³/W].
+    per_heat : tuple of ndarray, shape (m, n_b)
+        Weak gap per nodal heat into each body at its faces, bath included [m³/W].
     """
 
-    per_heat: tuple[np.ndarray, np.ndarray]
+    per_heat: tuple[np.ndarray, ...]
 
     def coupled(
         self, exchange: HeatExchange, reference: CoupledDistortion | None = None
@@ -222,27 +250,36 @@ class DistortionRows:
     Parameters
     ----------
     conduction : Conduction
-    faces : tuple of FaceNodes
+    nodes : tuple of FaceNodes
+        Nodes of each body.
     count : int
         Number m of pressure functions.
     """
 
-    def __init__(self, conduction: Conduction, faces: tuple[FaceNodes, FaceNodes], count: int):
-        self._conduction, self._faces, self._count = conduction.for_columns(), faces, count
-        self._bodies = [conduction.spaces.body_of(face.rows) for face in faces]
-        first, second = (np.zeros((count, face.count)) for face in faces)
-        self.distortion = ThermalDistortion((first, second))
+    def __init__(self, conduction: Conduction, nodes: tuple[FaceNodes, ...], count: int):
+        self._conduction, self._nodes = conduction.for_columns(), nodes
+        self._groups = [conduction.spaces.group_of(own.rows) for own in nodes]
+        self._per_heat = tuple(np.zeros((count, n.count)) for n in nodes)
+        self._last = -1
 
-    def add(self, body: int, columns: slice, per_rise: np.ndarray) -> None:
-        """Add the rows of a block from the weak gap per nodal rise of a body, (n_own, width)."""
-        adjoint, spaces = self._conduction.in_body(body).adjoint_response(per_rise), self._spaces
-        faces = zip(self._bodies, self._faces, self.distortion.per_heat, strict=True)
-        for own, face, rows in faces:
-            if own == body:
-                at_face = adjoint[face.rows - spaces.starts[body]]
-                rows[columns] += np.vstack(spaces.comm.allgather(at_face)).T
-        if columns.stop == self._count:  # the body is done
+    def add(self, group: int, columns: Columns, per_rise: np.ndarray) -> None:
+        """Add the rows of a block from the weak gap per nodal rise of a group, (n_own, width).
+
+        Blocks follow group by group.
+        """
+        if group != self._last:
             self._conduction.release()
+        self._last = group
+        adjoint, spaces = self._conduction.in_group(group).adjoint_response(per_rise), self._spaces
+        for own, nodes, rows in zip(self._groups, self._nodes, self._per_heat, strict=True):
+            if own == group:
+                at_face = adjoint[spaces.within(group, nodes.rows)]
+                rows[columns] += np.vstack(spaces.comm.allgather(at_face)).T
+
+    def finish(self) -> ThermalDistortion:
+        """Distortion by all blocks that have been added."""
+        self._conduction.release()
+        return ThermalDistortion(self._per_heat)
 
     @property
     def _spaces(self) -> Spaces:
@@ -252,11 +289,11 @@ class DistortionRows:
 def condense_distortion(
     conduction: Conduction,
     opening: ThermalOpening,
-    faces: tuple[FaceNodes, FaceNodes],
+    nodes: tuple[FaceNodes, ...],
     slopes: Sequence[np.ndarray] = (),
 ) -> ThermalDistortion:
     """Condense the thermal distortion; slopes as in `ThermalOpening`. Every rank calls."""
-    rows = DistortionRows(conduction, faces, opening.loads.shape[1])
-    for body, columns, per_rise in opening.by_columns(conduction.spaces, slopes):
-        rows.add(body, columns, per_rise)
-    return rows.distortion
+    rows = DistortionRows(conduction, nodes, opening.loads.shape[1])
+    for group, columns, per_rise in opening.by_columns(conduction.spaces, slopes):
+        rows.add(group, columns, per_rise)
+    return rows.finish()

@@ -6,8 +6,6 @@ functions of the facet of one side at contact point j. All others of its cell va
 
 from __future__ import annotations
 
-from petsc4py import PETSc
-
 import basix
 import numpy as np
 import scipy.sparse as sp
@@ -16,38 +14,54 @@ from dolfinx import fem
 from ...bulk.field import basis_element
 from ...bulk.spaces import Spaces
 from ...lagrange import tabulated
+from ..search.contacts import Contacts
 from ..search.pairing import PairedFace, Pairing
 
 
-def value_trace(spaces: Spaces, side: PairedFace) -> sp.csr_matrix:
-    """Transposed trace Eᵀ of scalar spaces: shape (n_owned, n_points). Every rank calls.
+def value_trace(spaces: Spaces, side: PairedFace, component: int = 0) -> sp.csr_matrix:
+    """Transposed trace Eᵀ of one component: shape (n_owned, n_points). Every rank calls.
 
-    ``E v`` are the values of a field at the points of one side.
+    ``E v`` are the values of a field, or of one of its components, at the points of one side.
     """
     index = side.face.body
     nodes, point, values = _local_values(spaces.each[index], side)
-    return gather_rows(spaces, index, nodes, point, values, len(side.t))
+    rows = nodes * spaces.components + component
+    return gather_rows(spaces, index, rows, point, values, len(side.t))
 
 
-def gap_trace(spaces: Spaces, pairing: Pairing) -> sp.csr_matrix:
+def face_traces(spaces: Spaces, contacts: Contacts) -> tuple[sp.csr_matrix, sp.csr_matrix]:
+    """Traces Eᵀ of the first and of the second faces of all contacts, see `value_trace`."""
+    first, second = (
+        sp.hstack([value_trace(spaces, pairing.sides[side]) for pairing in contacts.each]).tocsr()
+        for side in (0, 1)
+    )
+    return first, second
+
+
+def gap_trace(spaces: Spaces, contacts: Contacts) -> sp.csr_matrix:
     """Transposed gap trace Bᵀ of vector spaces: shape (n_owned, n_points). Every rank calls.
 
     ``B u = (u2 - u1)·n``, see `pairing` for the sign.
     """
-    return vector_trace(spaces, pairing, pairing.normals)
+    return vector_trace(spaces, contacts, contacts.normals)
 
 
-def vector_trace(spaces: Spaces, pairing: Pairing, directions: np.ndarray) -> sp.csr_matrix:
+def vector_trace(spaces: Spaces, contacts: Contacts, directions: np.ndarray) -> sp.csr_matrix:
     """Transposed trace of ``(u2 - u1)·e``: shape (n_owned, n_points). Every rank calls.
 
     Parameters
     ----------
     spaces : Spaces
         Vector spaces.
-    pairing : Pairing
+    contacts : Contacts
     directions : ndarray, shape (n_points, gdim)
         Direction e at each point; not necessarily a unit vector (traction of sliding contact).
     """
+    each = [_vector_trace(spaces, pairing, directions[points]) for pairing, points in contacts]
+    return each[0] if len(each) == 1 else sp.hstack(each).tocsr()
+
+
+def _vector_trace(spaces: Spaces, pairing: Pairing, directions: np.ndarray) -> sp.csr_matrix:
     count, width = len(pairing.weights), spaces.components
     result = sp.csr_matrix((spaces.owned, count))
     for sign, side in zip((-1.0, 1.0), pairing.sides, strict=True):
@@ -58,13 +72,6 @@ def vector_trace(spaces: Spaces, pairing: Pairing, directions: np.ndarray) -> sp
             dofs = nodes * width + component
             result = result + gather_rows(spaces, index, dofs, point, scaled, count)
     return result.tocsr()
-
-
-def distributed(spaces: Spaces, trace: sp.csr_matrix) -> PETSc.Mat:
-    """Transposed trace as a PETSc matrix, columns (points) distributed over the ranks too."""
-    csr = (trace.indptr.astype(PETSc.IntType), trace.indices.astype(PETSc.IntType), trace.data)
-    sizes = (spaces.owned, spaces.total), (PETSc.DECIDE, trace.shape[1])
-    return PETSc.Mat().createAIJ(sizes, csr=csr, comm=spaces.comm)
 
 
 def _local_values(space: fem.FunctionSpace, side: PairedFace):
@@ -132,4 +139,4 @@ def gather_rows(spaces: Spaces, index: int, rows, columns, values, n_points: int
         rows, columns, values = (np.concatenate([part[k] for part in received]) for k in range(3))
     shape = (index_map.size_local * bs, n_points)
     own = sp.coo_matrix((values, (rows - first, columns)), shape=shape)
-    return spaces.placed(index, own.tocsr())
+    return spaces.placed(spaces.rows(index), own.tocsr())

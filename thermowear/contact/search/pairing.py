@@ -115,6 +115,11 @@ class Pairing:
         """Contact points on the face of body 1, shape (n, gdim) [m]."""
         return self.sides[0].points
 
+    @property
+    def on_body_2(self) -> np.ndarray:
+        """Contact points on the face of body 2, shape (n, gdim) [m]."""
+        return self.sides[1].points
+
     def locate(self, position) -> np.ndarray:
         """Coordinates of positions along the face of a plane body, shape (n, 2) [m]."""
         columns = [np.interp(position, self.position, x) for x in self.points.T]

@@ -8,22 +8,23 @@ facet size; one solution gives the constant.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
+import scipy.sparse as sp
 
 from ...parallel import sum_over_ranks
 from ..operators.condensation import Influence
 from ..operators.pressure import dense, pressure_basis
 from ..operators.rigid_motion import RigidHolder
-from ..search.pairing import Pairing
+from ..search.contacts import Contacts
 from .signorini import solve_contact
 
 
 def enriched_pressure(
-    pairing: Pairing,
+    contacts: Contacts,
     influence: Influence,
-    degree: int,
+    degrees: Sequence[int],
     holder: RigidHolder,
     pressure: np.ndarray,
     gap: np.ndarray,
@@ -34,10 +35,10 @@ def enriched_pressure(
 
     Parameters
     ----------
-    pairing : Pairing
+    contacts : Contacts
     influence : Influence
-    degree : int
-        Degree of the pressure space Ψ.
+    degrees : sequence of int
+        Degree of the enriched pressure space Ψ⁺ of each interface.
     holder : RigidHolder
     pressure : ndarray, shape (n,) [Pa]
     gap : ndarray, shape (n,)
@@ -56,9 +57,10 @@ def enriched_pressure(
     ComputationError
         If there is no solution.
     """
-    basis, weights = dense(pressure_basis(pairing, degree + 1)), pairing.weights
+    finer = [pressure_basis(*each) for each in zip(contacts.each, degrees, strict=True)]
+    basis, weights = dense(sp.block_diag(finer, format="csr")), contacts.weights
     weighted = weights[:, None] * basis
-    compliance = _compliance(pairing, influence, basis, elastic_opening)
+    compliance = _compliance(contacts, influence, basis, elastic_opening)
     compliance = compliance + weighted.T @ (local[:, None] * basis)
     start = np.linalg.lstsq(basis, pressure, rcond=None)[0]
     modes, force_modes = weighted.T @ holder.modes, weighted.T @ holder.force_modes
@@ -73,7 +75,7 @@ def enriched_pressure(
 
 
 def _compliance(
-    pairing: Pairing, influence: Influence, basis: np.ndarray, elastic_opening
+    contacts: Contacts, influence: Influence, basis: np.ndarray, elastic_opening
 ) -> np.ndarray:
     """Compliance of the enriched basis: elastic response to Ψ, local for the details."""
     weighted = dense(influence.weighted)
@@ -86,10 +88,14 @@ def _compliance(
     probe = details @ signs
     found = elastic_opening(probe)
     found = found - opened @ np.linalg.solve(known, weighted.T @ found)
-    side = pairing.sides[0]
-    sizes = side.face.lengths[side.facet]  # of the facets of body 1 at the points
-    softness = (pairing.weights * probe) @ found / ((pairing.weights * probe**2) @ sizes)
-    mixed = (pairing.weights[:, None] * basis).T @ opened
-    local = (softness * sizes * pairing.weights)[:, None] * details
+    weights, sizes = contacts.weights, np.empty(len(probe))
+    softness = np.empty(len(probe))
+    for pairing, own in contacts:
+        side = pairing.sides[0]
+        sizes[own] = side.face.lengths[side.facet]  # of the facets of body 1 at the points
+        probed = weights[own] * probe[own]
+        softness[own] = (probed @ found[own]) / (probed * probe[own] @ sizes[own])
+    mixed = (weights[:, None] * basis).T @ opened
+    local = (softness * sizes * weights)[:, None] * details
     result = mixed @ np.linalg.solve(known, mixed.T) + details.T @ local
     return (result + result.T) / 2

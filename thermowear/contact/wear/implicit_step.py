@@ -7,7 +7,7 @@ if the error of its linearisation has not decreased.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
@@ -100,12 +100,22 @@ class WearRates:
     def __call__(self, pressure: np.ndarray) -> np.ndarray:
         """Wear rates, shape (n_wearing, n) [m/s]."""
         rates = np.zeros_like(self.factors)
-        for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
-            local = self.factors[row] * law.value(LocalState(pressure, *self.states[row]))
-            rates[row] = spread.share * local
-            if spread.means is not None:
-                rates[row] += spread.means.reach @ (spread.means.rows @ local)
+        for row, law in enumerate(self.laws):
+            rates[row] = self.by(law, row, pressure)
         return rates
+
+    def by(self, law: Law, row: int, pressure: np.ndarray) -> np.ndarray:
+        """Wear rate of a wearing body by a law, its own or that of one of its layers (n,) [m/s]."""
+        spread, local = self.spreads[row], law.value(LocalState(pressure, *self.states[row]))
+        local = self.factors[row] * local
+        own = spread.share * local
+        if spread.means is not None:
+            own += spread.means.reach @ (spread.means.rows @ local)
+        return own
+
+    def depths(self, pressure: np.ndarray) -> np.ndarray:
+        """Depths worn in the time step, shape (n_wearing, n) [m]."""
+        return self.step * self(pressure)
 
     def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:
         """Total depth worn in the time step, shape (n,) [m]."""
@@ -113,14 +123,28 @@ class WearRates:
 
     def slope(self, pressure: np.ndarray, last: object = None) -> Slope:
         """Derivative of `value` by the pressures [m/Pa]."""
+        return self.linearised(pressure, ((row, law, 1.0) for row, law in enumerate(self.laws)))
+
+    def linearised(
+        self, pressure: np.ndarray, terms: Iterable[tuple[int, Law, np.ndarray | float]]
+    ) -> Slope:
+        """Derivative of a sum of depths worn in the time step [m/Pa].
+
+        Parameters
+        ----------
+        pressure : ndarray, shape (n,) [Pa]
+        terms : iterable
+            Wearing body, law and weight of the rate of each term; a weight for each point or all.
+        """
         n = len(pressure)
         point, rows, reach = np.zeros(n), [np.zeros((0, n))], [np.zeros((n, 0))]
-        for row, (law, spread) in enumerate(zip(self.laws, self.spreads, strict=True)):
+        for row, law, weight in terms:
+            spread = self.spreads[row]
             local = self.factors[row] * law.slope(LocalState(pressure, *self.states[row]))
-            point += spread.share * local
+            point += weight * (spread.share * local)
             if spread.means is not None and spread.means.varies:
                 rows.append(spread.means.rows * local)
-                reach.append(spread.means.reach)
+                reach.append(np.reshape(weight, (-1, 1)) * spread.means.reach)
         return Slope(self.step * point, self.step * np.vstack(rows), np.hstack(reach))
 
 

@@ -1,5 +1,7 @@
 """Pressure space of a contact that grows by wear: pointwise at the edge of the worn zone.
 
+Where a layer is worn through, the pressure has such a jump at the edge of the next one.
+
 The pressure of a worn contact has a jump at its edge, which travels through the elements. In an
 element that it crosses, weak contact has two errors: the open gap beyond the edge contributes to
 the means that close the gap before it, so that too much is worn there; and the best approximation
@@ -142,7 +144,7 @@ class EdgeSpace(PressureSpace):
     Attributes
     ----------
     points : ndarray of bool, shape (n,)
-        Points with pointwise pressures.
+        Points with pointwise pressures of their own; those without area have that of the nearest.
     projection : ndarray, shape (m, k)
         Coefficients in Ψ of their projections, which load the bodies.
     local_compliance : ndarray, shape (k, k)
@@ -193,8 +195,8 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     share = (~points @ contact.weighted) / contact.weighted.sum(axis=0)
     cut = (share > _ZERO) & (share < 1.0 - _ZERO)
     whole = np.flatnonzero(share >= 1.0 - _ZERO)
-    single = np.zeros((len(points), np.count_nonzero(points)))
-    single[points] = np.eye(single.shape[1])
+    own_area = points & (weights > _ZERO * weights.max())
+    single = _single_points(points, own_area, contact.basis)
     split = np.hstack([np.where(points[:, None], 0.0, dense(contact.basis[:, cut])), single])
     projection = contact.projected(split)
     left = split - contact.basis @ projection
@@ -204,7 +206,7 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
     yielding = (weights * shortest_compliance(contact))[:, None] * left
     own[len(whole) :, len(whole) :] = left.T @ yielding
     return EdgeSpace(
-        points=points,
+        points=own_area,
         basis=basis,
         weighted=weighted,
         projection=np.hstack([np.eye(len(share))[:, whole], projection]),
@@ -212,6 +214,20 @@ def edge_space(contact: CondensedContact, points: np.ndarray, holder: RigidHolde
         modes=weighted.T @ holder.modes,
         force_modes=weighted.T @ holder.force_modes,
     )
+
+
+def _single_points(points: np.ndarray, own: np.ndarray, basis: Basis) -> np.ndarray:
+    """Functions of the points with an area of their own, shape (n, k).
+
+    The others, as on the axis of symmetry, have the pressure of the nearest of them.
+    """
+    single = np.zeros((len(points), np.count_nonzero(own)))
+    single[own] = np.eye(single.shape[1])
+    bare = points & ~own
+    if bare.any():
+        distances = np.abs(dense(basis[bare])[:, None] - dense(basis[own])).sum(axis=2)
+        single[bare] = single[own][distances.argmin(axis=1)]
+    return single
 
 
 def shortest_compliance(contact: CondensedContact) -> np.ndarray:

@@ -6,9 +6,12 @@ it, and the map from the unit cell to each cell preserves orientation everywhere
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import scipy
 
+from ...case.assembly.geometry import AssemblyGeometry
 from ...case.tables.geometry import Geometry
 from ...errors import CaseError, note
 from ..mesh.mixed import AnyMesh, block_of, block_with, retagged
@@ -19,6 +22,8 @@ _FLAT = 1e-8
 """Sine of the angle between grid lines below which a cell is degenerate."""
 _SAME = 1e-7
 """Distance relative to the size of a body below which nodes coincide."""
+AnyMeshed = Geometry | AssemblyGeometry
+"""Geometry of two bodies, or of several."""
 LEVEL = 1e-6
 """Tolerance for nodes on a plane of symmetry, relative to the size of the bodies."""
 
@@ -134,18 +139,18 @@ def check_mesh(mesh: AnyMesh, geometry: Geometry, model: str) -> None:
     """
     mesh = whole_bodies(mesh, geometry)
     for block in mesh.blocks:
-        _check_shared_edges(block)
+        check_shared_edges(block)
     for surface in geometry.contact:
-        _check_one_curve(_ends(block_with(mesh, surface), surface), surface)
+        check_one_curve(block_with(mesh, surface), surface, "geometry.contact")
     for body, surface in zip(geometry.bodies, (geometry.held, geometry.fixed), strict=True):
-        _check_pieces_held(block_of(mesh, body), body, surface)
+        check_pieces(block_of(mesh, body), body, [surface])
     if geometry.symmetry:
         if model == "axisymmetric":
             raise CaseError("geometry.half: an axisymmetric model has no plane of symmetry")
         _symmetry(mesh, geometry)
 
 
-def whole_bodies(mesh: AnyMesh, geometry: Geometry) -> AnyMesh:
+def whole_bodies(mesh: AnyMesh, geometry: AnyMeshed) -> AnyMesh:
     """Mesh with the cells of each body under one tag, those of its cell sets included."""
     given = mesh.cell_tags
     tags = np.zeros_like(given)
@@ -180,7 +185,7 @@ def _ends(mesh: TaggedMesh, surface: str) -> np.ndarray:
     return mesh.facets_of(surface)[:, :2]
 
 
-def _check_shared_edges(mesh: TaggedMesh) -> None:
+def check_shared_edges(mesh: TaggedMesh) -> None:
     """Reject edges with more than one surface name."""
     edges = np.sort(mesh.facets[:, :2], axis=1)
     _, first, edge = np.unique(edges, axis=0, return_index=True, return_inverse=True)
@@ -195,33 +200,34 @@ def _check_shared_edges(mesh: TaggedMesh) -> None:
         )
 
 
-def _check_one_curve(ends: np.ndarray, surface: str) -> None:
-    """Check that a contact face is one curve, open or closed."""
+def check_one_curve(mesh: TaggedMesh, surface: str, path: str) -> None:
+    """Check that a contact face is one curve, open or closed; `path` is the key that names it."""
+    ends = _ends(mesh, surface)
     nodes, compact, count = np.unique(ends, return_inverse=True, return_counts=True)
     parts = 1 + components(compact.reshape(ends.shape), len(nodes)).max()
     if parts > 1 or count.max() > 2:
         raise CaseError(
-            f"geometry.contact: the edges of {surface!r} are in {parts} pieces; a contact "
+            f"{path}: the edges of {surface!r} are in {parts} pieces; a contact "
             "face must be one curve without branches"
         )
 
 
-def _check_pieces_held(mesh: TaggedMesh, body: str, surface: str) -> None:
-    """Check that every piece of a body has part of the surface that holds it."""
+def check_pieces(mesh: TaggedMesh, body: str, surfaces: Sequence[str]) -> None:
+    """Check that every piece of a body has part of the surfaces that hold it."""
     cells = mesh.cells[mesh.cell_tags == mesh.bodies.index(body) + 1]
     links = np.column_stack([np.repeat(cells[:, 0], cells.shape[1]), cells.ravel()])
     label = components(links, len(mesh.points))
     pieces = np.unique(label[cells[:, 0]])
-    held = np.unique(label[_ends(mesh, surface)])
-    loose = np.setdiff1d(pieces, held)
+    held = np.unique(label[np.concatenate([_ends(mesh, surface) for surface in surfaces])])
+    loose, at = np.setdiff1d(pieces, held), " or ".join(map(repr, surfaces))
     if len(loose):
         count = np.count_nonzero(np.isin(label[cells[:, 0]], loose))
         raise CaseError(
             f"geometry.path: {count} of {len(cells)} cells of {body!r} are not joined to those "
-            f"held at {surface!r}; a body must be in one piece"
+            f"held at {at}; a body must be in one piece"
         )
     if len(pieces) > 1:
-        note(f"geometry.path: {body!r} has {len(pieces)} pieces, all held by {surface!r}")
+        note(f"geometry.path: {body!r} has {len(pieces)} pieces, all held by {at}")
 
 
 def on_surface(mesh: AnyMesh, surface: str) -> np.ndarray:

@@ -26,12 +26,14 @@ _PIECES = 4
 """Number of straight segments per curved edge, times its order."""
 _FACING = 0.05
 """Least cosine between a normal and the load direction of a segment that faces the other body."""
-_SQUEEZED = 0.2
+SQUEEZED = 0.2
 """Largest compression relative to the height of a body; beyond it small strains are invalid."""
-_MUCH = 0.02
+MUCH = 0.02
 """Compression relative to the height of a body above which a note is issued."""
 _AT_ONCE = 2000
 """Number of points at which faces are compared together."""
+_AS_THEY_ARE = np.eye(2)
+"""No rotation."""
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,7 @@ def check_pair(mesh: AnyMesh, case: Case) -> None:
     faces = _compared(whole_bodies(mesh, case.geometry), case)
     height, overlap = faces.height, -faces.gap
     of_body = f"of {faces.body!r}, which is {length(height)} high"
-    if overlap > _SQUEEZED * height:
+    if overlap > SQUEEZED * height:
         raise CaseError(
             f"geometry.path: the bodies overlap by {length(overlap)}{faces.where}, "
             f"{overlap / height:.0%} {of_body}; move the faces to initial contact"
@@ -76,7 +78,7 @@ def check_pair(mesh: AnyMesh, case: Case) -> None:
     if approach is not None:
         _check_approach(case, faces, approach, of_body)
     _check_pressure(case, faces)
-    if overlap > _MUCH * height:
+    if overlap > MUCH * height:
         note(
             f"geometry.path: the bodies overlap by {length(overlap)} before loading{faces.where}, "
             f"{overlap / height:.1%} {of_body}"
@@ -86,7 +88,7 @@ def check_pair(mesh: AnyMesh, case: Case) -> None:
 def _check_approach(case: Case, faces: _Faces, approach: float, of_body: str) -> None:
     """Check that a prescribed approach closes the gap without excessive compression."""
     key = "load.history.approach" if case.load.approach is None else "load.approach"
-    if approach - faces.gap > _SQUEEZED * faces.height:
+    if approach - faces.gap > SQUEEZED * faces.height:
         raise CaseError(
             f"{key}: {length(approach)} compresses the bodies by "
             f"{(approach - faces.gap) / faces.height:.0%} {of_body} (check geometry.length_unit)"
@@ -111,7 +113,7 @@ def _check_pressure(case: Case, faces: _Faces) -> None:
     }
     softer = min(moduli, key=moduli.__getitem__)
     strain = force / area / moduli[softer]
-    if strain > _SQUEEZED:
+    if strain > SQUEEZED:
         raise CaseError(
             f"load: a mean pressure of {force / area / 1e6:.4g} MPa, for contact {faces.extent} of "
             f"the faces, is {strain:.2g} times the modulus of {softer!r} "
@@ -138,19 +140,57 @@ def _compared(mesh: AnyMesh, case: Case) -> _Faces:
 
 def _gap(mesh: AnyMesh, geometry: Geometry) -> tuple[float, tuple[float, float]]:
     """Smallest gap between the contact faces of a section, and their common range of x [m]."""
-    upper, lower = (_pieces(block_with(mesh, name), name) for name in geometry.contact)
-    down, up = upper[_normals(upper)[:, 1] < -_FACING], lower[_normals(lower)[:, 1] > _FACING]
+    down, up = facing_pieces(mesh, geometry.contact)
     for facing, name, way in ((down, geometry.contact[0], "down"), (up, geometry.contact[1], "up")):
         if not len(facing):
             raise CaseError(
                 f"geometry.contact: {name!r} does not face {way}; body {geometry.bodies[0]!r} is "
                 f"loaded along -y, so it must lie above {geometry.bodies[1]!r}"
             )
+    return section_gap(down, up, "geometry")
+
+
+def facing_pieces(
+    mesh: AnyMesh, names: tuple[str, str], turn: np.ndarray = _AS_THEY_ARE
+) -> tuple[np.ndarray, np.ndarray]:
+    """Segments of the first face of a section that face down, and of the second one that face up.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh or MixedMesh
+    names : tuple of str
+        Both faces.
+    turn : ndarray, shape (2, 2)
+        Rotation of the faces, after which they are compared along y.
+
+    Returns
+    -------
+    tuple of ndarray, shape (n, 2 ends, 2) [m]
+    """
+    upper, lower = (pieces(block_with(mesh, name), name) @ turn.T for name in names)
+    return upper[_normals(upper)[:, 1] < -_FACING], lower[_normals(lower)[:, 1] > _FACING]
+
+
+def section_gap(down: np.ndarray, up: np.ndarray, path: str) -> tuple[float, tuple[float, float]]:
+    """Smallest gap between the segments of two faces along y, and their common range of x [m].
+
+    Parameters
+    ----------
+    down, up : ndarray, shape (n, 2 ends, 2)
+        See `facing_pieces`.
+    path : str
+        Key that names the faces, for the message.
+
+    Raises
+    ------
+    CaseError
+        If they do not lie opposite each other.
+    """
     first = max(down[..., 0].min(), up[..., 0].min())
     last = min(down[..., 0].max(), up[..., 0].max())
     if first >= last:
         raise CaseError(
-            "geometry: the contact faces do not lie opposite each other; they range from x = "
+            f"{path}: the contact faces do not lie opposite each other; they range from x = "
             f"{down[..., 0].min():.6g} to {down[..., 0].max():.6g} m and from "
             f"{up[..., 0].min():.6g} to {up[..., 0].max():.6g} m"
         )
@@ -160,7 +200,7 @@ def _gap(mesh: AnyMesh, geometry: Geometry) -> tuple[float, tuple[float, float]]
     return float(np.nanmin(gap)), (float(first), float(last))
 
 
-def _pieces(mesh: TaggedMesh, surface: str) -> np.ndarray:
+def pieces(mesh: TaggedMesh, surface: str) -> np.ndarray:
     """Straight segments of a surface, with their body on the left, shape (n, 2 ends, 2) [m]."""
     t = np.linspace(0.0, 1.0, 1 + (_PIECES * mesh.order if mesh.order > 1 else 1))
     values = shape_functions("interval", mesh.order, t[:, None])

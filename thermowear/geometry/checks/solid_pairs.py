@@ -30,11 +30,13 @@ _NEAREST = 32
 """Number of triangles around a point among which the one above or below it is sought."""
 _MOST = 20_000
 """Largest number of points of a face that are compared."""
+_AS_THEY_ARE = np.eye(3)
+"""No rotation."""
 
 
 @dataclass(frozen=True)
 class SolidFaces:
-    """Contact faces compared along the load direction, -z.
+    """Contact faces compared along a direction, by default the load direction -z.
 
     Attributes
     ----------
@@ -43,7 +45,7 @@ class SolidFaces:
     where : str
         Position of the smallest distance, as text.
     area : float
-        Lesser area of both faces, projected along the load [m²].
+        Lesser area of both faces, projected along the direction [m²].
     """
 
     gap: float
@@ -60,14 +62,55 @@ def compared_solids(mesh: AnyMesh, geometry: Geometry) -> SolidFaces:
         If they do not face each other.
     """
     names, bodies = geometry.contact, geometry.bodies
-    upper, lower = (_triangles(mesh, name) for name in names)
-    down, up = upper[_cosines(upper) < -_FACING], lower[_cosines(lower) > _FACING]
+    down, up = facing_triangles(mesh, names)
     for facing, name, way in ((down, names[0], "down"), (up, names[1], "up")):
         if not len(facing):
             raise CaseError(
                 f"geometry.contact: {name!r} does not face {way}; body {bodies[0]!r} is loaded "
                 f"along -z, so it must lie above {bodies[1]!r}"
             )
+    area = min(projected_area(mesh, name) for name in names)
+    return distances(down, up, area, "geometry")
+
+
+def facing_triangles(
+    mesh: AnyMesh, names: tuple[str, str], turn: np.ndarray = _AS_THEY_ARE
+) -> tuple[np.ndarray, np.ndarray]:
+    """Small triangles of the first face that face down, and of the second one that face up [m].
+
+    Parameters
+    ----------
+    mesh : TaggedMesh or MixedMesh
+    names : tuple of str
+        Both faces.
+    turn : ndarray, shape (3, 3)
+        Rotation of the faces, after which they are compared along z.
+    """
+    upper, lower = (_triangles(mesh, name) @ turn.T for name in names)
+    return upper[_cosines(upper) < -_FACING], lower[_cosines(lower) > _FACING]
+
+
+def distances(
+    down: np.ndarray, up: np.ndarray, area: float, path: str, turn: np.ndarray = _AS_THEY_ARE
+) -> SolidFaces:
+    """Compare triangles of two faces along z.
+
+    Parameters
+    ----------
+    down, up : ndarray, shape (n, 3, 3)
+        See `facing_triangles`.
+    area : float
+        Lesser projected area of both faces [m²].
+    path : str
+        Key that names the faces, for the message.
+    turn : ndarray, shape (3, 3)
+        Rotation of the faces before the comparison.
+
+    Raises
+    ------
+    CaseError
+        If they do not lie opposite each other.
+    """
     of_upper, of_lower = _nodes(down), _nodes(up)
     below, above = of_upper[:, 2] - _heights(of_upper, up), _heights(of_lower, down)
     gaps = np.concatenate([below, above - of_lower[:, 2]])
@@ -76,24 +119,30 @@ def compared_solids(mesh: AnyMesh, geometry: Geometry) -> SolidFaces:
             ", ".join(
                 f"{c} = {a:.6g} to {b:.6g} m" for c, a, b in zip("xy", *_box(of), strict=True)
             )
-            for of in (of_upper, of_lower)
+            for of in (of_upper @ turn, of_lower @ turn)
         )
         raise CaseError(
-            f"geometry: the contact faces do not lie opposite each other; they range from {ranges}"
+            f"{path}: the contact faces do not lie opposite each other; they range from {ranges}"
         )
     closest = int(np.nanargmin(gaps))
-    where = at(np.concatenate([of_upper, of_lower])[closest : closest + 1])
-    area = min(projected_area(mesh, name) for name in names)
+    where = at(np.concatenate([of_upper, of_lower])[closest : closest + 1] @ turn)
     return SolidFaces(float(gaps[closest]), where, area)
 
 
-def projected_area(mesh: AnyMesh, surface: str) -> float:
+def area_vector(mesh: AnyMesh, surface: str) -> tuple[np.ndarray, float]:
+    """Integral of the outward normal over a face, shape (3,), and its area [m²]."""
+    x = _triangles(mesh, surface)
+    normals = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]) / 2
+    return normals.sum(axis=0), float(np.linalg.norm(normals, axis=1).sum())
+
+
+def projected_area(mesh: AnyMesh, surface: str, turn: np.ndarray = _AS_THEY_ARE) -> float:
     """Area of a contact face projected along z, exact for its curved facets [m²]."""
     mesh = block_with(mesh, surface)
     kind, order = mesh.facet_type, mesh.order
     points, weights = gauss(2 * order, kind)
     tangents = slopes(kind, order, points)
-    s, t = np.einsum("qdk,fki->dfqi", tangents, mesh.points[mesh.facets_of(surface)])
+    s, t = np.einsum("qdk,fki->dfqi", tangents, mesh.points[mesh.facets_of(surface)] @ turn.T)
     return float(abs(np.sum(_cross(s, t) @ weights)))
 
 

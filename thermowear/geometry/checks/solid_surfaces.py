@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ...case.tables.geometry import Geometry
@@ -15,7 +17,7 @@ from .solid_checks import CORNERS, at, node_links
 
 _FLUSH = 0.95
 """Least cosine of the angle between facets on both sides of the rim of a hole in one surface."""
-_PLANES = {"symmetry": 0, "rollers": 1, "mid_plane": 2}
+PLANES = {"symmetry": 0, "rollers": 1, "mid_plane": 2}
 """Keys of surfaces on planes, and the coordinate that is constant there."""
 _CUTS_BOTH = ("symmetry", "rollers")
 """Keys of planes that cut both bodies."""
@@ -32,13 +34,14 @@ def check_solid_mesh(mesh: AnyMesh, geometry: Geometry) -> None:
     """
     mesh = whole_bodies(mesh, geometry)
     for block in mesh.blocks:
-        _check_shared_facets(block)
+        check_shared_facets(block)
     for index, surface in enumerate(geometry.contact):
-        _check_surface(block_with(mesh, surface), surface, index)
+        check_solid_face(block_with(mesh, surface), surface, index, "geometry.contact")
     for body, surface in zip(geometry.bodies, (geometry.held, geometry.fixed), strict=True):
-        _check_pieces_held(block_of(mesh, body), body, surface)
-    for key, axis in _PLANES.items():
-        _check_planes(mesh, key, getattr(geometry, key), axis)
+        check_solid_pieces(block_of(mesh, body), body, [surface])
+    for key, axis in PLANES.items():
+        for surface in getattr(geometry, key):
+            check_plane(mesh, mesh.points, f"geometry.{key}", surface, axis)
     _check_supports(mesh, geometry)
     for key in _CUTS_BOTH:
         if getattr(geometry, key):
@@ -50,7 +53,7 @@ def facet_corners(mesh: TaggedMesh, facets: np.ndarray) -> np.ndarray:
     return facets[:, : 3 if mesh.facet_type == "triangle" else 4]
 
 
-def _check_shared_facets(mesh: TaggedMesh) -> None:
+def check_shared_facets(mesh: TaggedMesh) -> None:
     """Reject facets with more than one surface name."""
     corners = facet_corners(mesh, mesh.facets)
     number, count = numbered(corners)
@@ -70,15 +73,25 @@ def _edges(corners: np.ndarray) -> np.ndarray:
     return np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2)
 
 
-def _check_surface(mesh: TaggedMesh, surface: str, body: int) -> None:
-    """Reject a branched contact face; note holes in it that lie in the same surface of the body."""
+def check_solid_face(mesh: TaggedMesh, surface: str, body: int, path: str) -> None:
+    """Reject a branched contact face; note holes in it that lie in the same surface of the body.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh
+    surface : str
+    body : int
+        Index of its body.
+    path : str
+        Key that names the face, for messages.
+    """
     corners = facet_corners(mesh, mesh.facets_of(surface))
     edges = _edges(corners)
     number, count = numbered(edges)
     branched = count[number] > 2
     if branched.any():
         raise CaseError(
-            f"geometry.contact: {surface!r} branches {at(mesh.points[edges[np.argmax(branched)]])};"
+            f"{path}: {surface!r} branches {at(mesh.points[edges[np.argmax(branched)]])};"
             " an edge of a contact face has at most two facets"
         )
     rim = np.flatnonzero(count[number] == 1)
@@ -94,7 +107,7 @@ def _check_surface(mesh: TaggedMesh, surface: str, body: int) -> None:
         if flush[np.isin(rim, loops[k])].all():
             lengths = " by ".join(length(x) for x in np.sort(sizes[k])[:0:-1])
             note(
-                f"geometry.contact: {surface!r} has a hole of {lengths} "
+                f"{path}: {surface!r} has a hole of {lengths} "
                 f"{at(mesh.points[edges[loops[k], 0]])}: its facets are in no named surface, and "
                 "have no contact"
             )
@@ -130,46 +143,61 @@ def _normals(mesh: TaggedMesh, corners: np.ndarray) -> np.ndarray:
     return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
-def _check_pieces_held(mesh: TaggedMesh, body: str, surface: str) -> None:
-    """Check that every piece of a body has part of the surface that holds it."""
+def check_solid_pieces(mesh: TaggedMesh, body: str, surfaces: Sequence[str]) -> None:
+    """Check that every piece of a body has part of the surfaces that hold it."""
     cells = mesh.cells[mesh.cell_tags == mesh.bodies.index(body) + 1][:, : CORNERS[mesh.cell_type]]
     label = components(node_links(cells), len(mesh.points))
     of_cells = label[cells[:, 0]]
     pieces = np.unique(of_cells)
-    held = label[facet_corners(mesh, mesh.facets_of(surface))]
+    corners = [facet_corners(mesh, mesh.facets_of(surface)) for surface in surfaces]
+    held, by = label[np.concatenate(corners)], " or ".join(map(repr, surfaces))
     loose = np.isin(of_cells, held, invert=True)
     if loose.any():
         raise CaseError(
             f"geometry.path: {loose.sum()} of {len(cells)} cells of {body!r} are not joined to "
-            f"those held at {surface!r}, one {at(mesh.points[cells[np.argmax(loose)]])}; a body "
+            f"those held at {by}, one {at(mesh.points[cells[np.argmax(loose)]])}; a body "
             "must be in one piece"
         )
     if len(pieces) > 1:
-        note(f"geometry.path: {body!r} has {len(pieces)} pieces, all held by {surface!r}")
+        note(f"geometry.path: {body!r} has {len(pieces)} pieces, all held by {by}")
 
 
-def _check_planes(mesh: AnyMesh, key: str, names: tuple[str, ...], axis: int) -> None:
-    """Check that surfaces lie in planes x, y or z = const, with the bodies on one side of each."""
-    points = mesh.points
+def check_plane(mesh: AnyMesh, points: np.ndarray, path: str, surface: str, axis: int) -> None:
+    """Check that a surface lies in a plane x, y or z = const, with its bodies on one side.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh or MixedMesh
+    points : ndarray, shape (n, gdim)
+        Nodes of these bodies [m].
+    path : str
+        Key that names the surface, for messages.
+    surface : str
+    axis : int
+        Index of the constant coordinate.
+
+    Raises
+    ------
+    CaseError
+    """
     letter, size = "xyz"[axis], np.ptp(points, axis=0).max()
-    for name in names:
-        level = on_surface(mesh, name)[:, axis]
-        if np.ptp(level) > LEVEL * size:
-            raise CaseError(
-                f"geometry.{key}: {name!r} does not lie in a plane {letter} = const; it ranges from"
-                f" {letter} = {level.min():.6g} to {level.max():.6g} m"
-            )
-        beyond = points[:, axis] - level.mean()
-        if min(beyond.max(), -beyond.min()) > LEVEL * size:
-            raise CaseError(
-                f"geometry.{key}: the bodies lie on both sides of the plane of {name!r}, "
-                f"{letter} = {level.mean():.6g} m"
-            )
+    level = on_surface(mesh, surface)[:, axis]
+    if np.ptp(level) > LEVEL * size:
+        raise CaseError(
+            f"{path}: {surface!r} does not lie in a plane {letter} = const; it ranges from"
+            f" {letter} = {level.min():.6g} to {level.max():.6g} m"
+        )
+    beyond = points[:, axis] - level.mean()
+    if min(beyond.max(), -beyond.min()) > LEVEL * size:
+        raise CaseError(
+            f"{path}: the bodies lie on both sides of the plane of {surface!r}, "
+            f"{letter} = {level.mean():.6g} m"
+        )
 
 
 def _check_supports(mesh: AnyMesh, geometry: Geometry) -> None:
     """Reject a body that its supports leave free to move."""
-    guided = [getattr(geometry, key) for key in _PLANES]
+    guided = [getattr(geometry, key) for key in PLANES]
     smooth = {name for names in guided for name in names}
     clamped = [name for name in (geometry.held, geometry.fixed) if name not in smooth]
     for body in geometry.bodies:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from operator import attrgetter
-from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import (
@@ -24,9 +22,7 @@ from ..checks.mesh_checks import check_mesh
 from ..checks.pair_checks import check_pair
 from ..checks.solid_pairs import projected_area
 from ..checks.solid_surfaces import check_solid_mesh
-from ..reading.assembly import assemble, divided
-from ..reading.contents import MeshContents, joined
-from ..reading.file_contents import read_contents
+from ..reading.bodies import read_bodies
 from ..reading.named import Named
 
 _KEYS = {
@@ -238,27 +234,15 @@ class MeshFile(HalvableGeometry):
         return result
 
     def build(self, mesh, zone):
-        contents = self._contents()
-        contents = replace(contents, points=contents.points * self.length_unit)
-        bodies = [
-            Named(b, self.sets_of(b), f"geometry.bodies.{b}", index)
-            for index, b in enumerate(self.bodies)
-        ]
-        tagged = assemble(contents, bodies, list(self._purposes().values()))
-        sets = [
-            Named(f"{body}.{name}", (name,), path, index)
-            for index, body in enumerate(self.bodies)
-            for name, path in self._with_material.get(body, {}).items()
-        ]
-        return divided(tagged, contents, bodies, sets)
-
-    def _contents(self) -> MeshContents:
-        """Contents of the file, or of those of both bodies."""
-        dim = 3 if self._in_space else 2
-        if self.path is not None:
-            return read_contents(Path(self.path), dim)
-        files = {body: f"geometry.paths.{body}" for body in self.bodies}
-        return joined([read_contents(Path(self.paths[b]), dim, key) for b, key in files.items()])
+        return read_bodies(
+            self.path,
+            self.paths,
+            3 if self._in_space else 2,
+            self.length_unit,
+            {body: self.sets_of(body) for body in self.bodies},
+            list(self._purposes().values()),
+            self._with_material,
+        )
 
     def check(self, mesh, case):
         if self._in_space:

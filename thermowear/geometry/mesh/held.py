@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...errors import CaseError
-from .mixed import AnyMesh, block_of
+from .mixed import AnyMesh
 from .tagged import TaggedMesh
 
 _NAMES = {
@@ -22,7 +22,7 @@ _NONE = 1e-12
 def free_motions(
     mesh: AnyMesh, parts: Sequence[str], clamped: Sequence[str], guided: Sequence[Sequence[str]]
 ) -> list[str]:
-    """Names of the rigid motions of a body that are free, alone or with each other.
+    """Names of the rigid motions of a body, or of glued ones, that are free, alone or with others.
 
     Springs of equal stiffness are thought at the held components of the nodes: a motion that does
     not deform any of them is free.
@@ -32,25 +32,19 @@ def free_motions(
     mesh : TaggedMesh or MixedMesh
         Of a section or in space.
     parts : sequence of str
-        Parts of the body.
+        Parts of the body, or of all bodies that are glued to each other.
     clamped : sequence of str
         Surfaces, of any body, fixed in all directions.
     guided : sequence of sequences of str
         Surfaces fixed in the first, the second (and the third) direction.
     """
-    block = block_of(mesh, *parts)
-    dim = block.points.shape[1]
-    tags = [block.bodies.index(part) + 1 for part in parts]
-    own = np.zeros(len(block.points), dtype=bool)
-    own[block.cells[np.isin(block.cell_tags, tags)]] = True
-    each = [_nodes(block, own, (*clamped, *guided[axis])) for axis in range(dim)]
-    held = block.points[np.concatenate(each)]
+    dim = mesh.blocks[0].points.shape[1]
+    each = [_held(mesh, parts, (*clamped, *guided[axis])) for axis in range(dim)]
+    held = np.concatenate(each)
     if not len(held):
         return list(_NAMES[dim])
     middle, size = held.mean(axis=0), np.ptp(held, axis=0).max() or 1.0
-    rows = [
-        _motions((block.points[nodes] - middle) / size)[:, axis] for axis, nodes in enumerate(each)
-    ]
+    rows = [_motions((points - middle) / size)[:, axis] for axis, points in enumerate(each)]
     springs = np.concatenate(rows)
     values, modes = np.linalg.eigh(springs.T @ springs)
     free = modes[:, values < _NONE * values.max()]
@@ -75,9 +69,16 @@ def check_held(body: str, free: Sequence[str]) -> None:
         )
 
 
-def _nodes(block: TaggedMesh, own: np.ndarray, surfaces: Sequence[str]) -> np.ndarray:
-    """Nodes on any of some surfaces among those of a mask."""
-    on_them = np.zeros_like(own)
+def _held(mesh: AnyMesh, parts: Sequence[str], surfaces: Sequence[str]) -> np.ndarray:
+    """Points of parts on any of some surfaces, shape (n, dim) [m]."""
+    return np.concatenate([block.points[_nodes(block, parts, surfaces)] for block in mesh.blocks])
+
+
+def _nodes(block: TaggedMesh, parts: Sequence[str], surfaces: Sequence[str]) -> np.ndarray:
+    """Nodes of parts on any of some surfaces."""
+    own, on_them = np.zeros((2, len(block.points)), dtype=bool)
+    tags = [block.bodies.index(part) + 1 for part in parts]
+    own[block.cells[np.isin(block.cell_tags, tags)]] = True
     for surface in surfaces:
         on_them[block.facets_of(surface)] = True
     return np.flatnonzero(own & on_them)

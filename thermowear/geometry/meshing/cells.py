@@ -9,7 +9,7 @@ follow the map. Surfaces are named by predicates of their facets.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -151,8 +151,8 @@ def tagged_bodies(bodies: dict[str, MeshedBody], surfaces: dict[str, Claim]) -> 
     bodies : dict of str to MeshedBody
         Bodies by name, body 1 first.
     surfaces : dict of str to callable
-        Predicate of each surface, named ``body_surface``; a facet belongs to the first surface of
-        its body whose predicate is true.
+        Predicate of each surface, named ``body_surface`` (of the longest such body); a facet
+        belongs to the first surface of its body whose predicate is true.
     """
     names = [*bodies, *(zone for body in bodies.values() for zone in body.zones)]
     shift, points, cells, cell_tags, facets, facet_tags = 0, [], [], [], [], []
@@ -160,7 +160,7 @@ def tagged_bodies(bodies: dict[str, MeshedBody], surfaces: dict[str, Claim]) -> 
         places = body.points[body.facets]
         marks = np.zeros(len(body.facets), dtype=np.int32)
         for mark, (surface, claims) in enumerate(surfaces.items(), start=1):
-            if surface.startswith(f"{name}_"):
+            if _owner(surface, bodies) == name:
                 marks[(marks == 0) & claims(places)] = mark
         points.append(body.points)
         cells.append(body.cells + shift)
@@ -180,6 +180,11 @@ def tagged_bodies(bodies: dict[str, MeshedBody], surfaces: dict[str, Claim]) -> 
         bodies=tuple(names),
         surfaces=tuple(surfaces),
     )
+
+
+def _owner(surface: str, bodies: Iterable[str]) -> str:
+    """Body that a surface belongs to."""
+    return max((name for name in bodies if surface.startswith(f"{name}_")), key=len, default="")
 
 
 def _nodes(sheet: Sheet, order: int) -> np.ndarray:

@@ -6,7 +6,8 @@ Angles are measured from the vertical, positive towards +x [rad].
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,7 +28,7 @@ _WIDEST = math.radians(12.0)
 
 @dataclass(frozen=True)
 class Polar:
-    """Polar coordinates about a centre on the line x = 0.
+    """Polar coordinates about a centre.
 
     Attributes
     ----------
@@ -35,10 +36,13 @@ class Polar:
         y of the centre [m].
     downwards : bool
         True if angles are measured from -y instead of +y.
+    x : float
+        x of the centre [m].
     """
 
     height: float = 0.0
     downwards: bool = False
+    x: float = 0.0
 
     def sheet(self, angles: np.ndarray, radii: np.ndarray) -> Sheet:
         """Cells between rays and circles."""
@@ -49,19 +53,19 @@ class Polar:
         angle, radius = p[..., 0], p[..., 1]
         up = radius * np.cos(angle)
         y = self.height - up if self.downwards else self.height + up
-        return np.stack([radius * np.sin(angle), y], axis=-1)
+        return np.stack([self.x + radius * np.sin(angle), y], axis=-1)
 
     def circle(self, radius: float, span: tuple[float, float] | None = None) -> Claim:
         """Predicate of edges with all nodes on a circle, and midpoints between two angles."""
 
         def claim(p):
-            distance = np.hypot(p[..., 0], p[..., 1] - self.height)
+            distance = np.hypot(p[..., 0] - self.x, p[..., 1] - self.height)
             on_circle = np.all(np.abs(distance - radius) < 1e-9 * radius, axis=1)
             if span is None:
                 return on_circle
             x, y = p.mean(axis=1).T
             up = self.height - y if self.downwards else y - self.height
-            turned = np.arctan2(x, up) - (span[0] + span[1]) / 2
+            turned = np.arctan2(x - self.x, up) - (span[0] + span[1]) / 2
             off_middle = np.abs((turned + math.pi) % (2 * math.pi) - math.pi)
             return on_circle & (off_middle < (span[1] - span[0]) / 2)
 
@@ -94,20 +98,20 @@ class Division:
 
     def all_round(self) -> np.ndarray:
         """Angles of the element ends around the whole circle, starting with the face."""
-        steps = np.diff(self.angles)
-        left, right = self._beside(steps[0]), self._beside(steps[-1])
-        outside = np.cumsum(np.concatenate([right, left[::-1]]))
-        angles = np.concatenate([self.angles, self.angles[-1] + outside])
-        angles[-1] = self.angles[0] + 2 * math.pi
-        return angles
+        return all_round([self])
 
-    def _beside(self, edge: float) -> np.ndarray:
-        """Angles of elements from an end of the face to the point opposite to the face.
+    def beside(self, edge: float, room: float) -> np.ndarray:
+        """Angles of elements from an end of the face to the middle of the arc beside it.
 
         They start as wide as the last one on the face and grow by `QUICKLY` to the widest there.
+
+        Parameters
+        ----------
+        edge : float
+            Angle of the last element on the face [rad].
+        room : float
+            Half the angle of the arc [rad].
         """
-        first, last = self.span
-        room = math.pi - (last - first) / 2
         widest = min(float(np.diff(self.angles).max()), _WIDEST)
         quick: list[float] = []
         size = min(edge, widest)
@@ -116,6 +120,17 @@ class Division:
             size = min(QUICKLY * size, widest)
         rest = growing(0.0, room - sum(quick), size, 1 / growth(self.elements), _WIDEST)
         return np.concatenate([quick, np.diff(rest)])
+
+    def turned(self, angle: float) -> Division:
+        """Same division farther round the circle."""
+        return replace(self, angles=self.angles + angle)
+
+    def sector(self, half: float) -> np.ndarray:
+        """Angles of the element ends on an arc of half the angle `half` about the middle, 0."""
+        right = self.beside(float(np.diff(self.angles)[-1]), half - self.span[1])
+        left = self.beside(float(np.diff(self.angles)[0]), half + self.span[0])
+        outer = self.span[1] + np.cumsum(right), self.span[0] - np.cumsum(left)
+        return np.concatenate([outer[1][::-1], self.angles, outer[0]])
 
     def rows(self, start: float, end: float) -> np.ndarray:
         """Radii of the row ends of a ring, from its face to the other side [m]."""
@@ -144,6 +159,25 @@ class Division:
             layers.append(depth + rows)
             depth, size = depth + thickness, border
         return layers
+
+
+def all_round(faces: Sequence[Division]) -> np.ndarray:
+    """Angles of the element ends around the whole circle, starting with the first face.
+
+    Parameters
+    ----------
+    faces : sequence of Division
+        Faces on the circle, clockwise, with gaps between them.
+    """
+    first, parts = float(faces[0].angles[0]), []
+    for face, following in zip(faces, [*faces[1:], faces[0]], strict=True):
+        room = (following.span[0] - face.span[1]) % (2 * math.pi) / 2
+        right = face.beside(float(np.diff(face.angles)[-1]), room)
+        left = following.beside(float(np.diff(following.angles)[0]), room)
+        outside = face.angles[-1] + np.cumsum(np.concatenate([right, left[::-1]]))
+        turned = first + (face.span[0] - first) % (2 * math.pi) - face.span[0]
+        parts.append(np.concatenate([face.angles, outside[:-1]]) + turned)
+    return np.append(np.concatenate(parts), first + 2 * math.pi)
 
 
 def complete(

@@ -25,7 +25,7 @@ _ORDERS = {
 """Geometric order by cell type and number of nodes."""
 _PLURALS = {"tetrahedron": "tetrahedra", "hexahedron": "hexahedra"}
 _FARTHEST, _SMALLEST = 1e6, 1e-8
-"""Largest distance of nodes from the origin, and least size of both bodies [m]."""
+"""Largest distance of nodes from the origin, and least size of all bodies [m]."""
 
 
 def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named]) -> AnyMesh:
@@ -53,7 +53,7 @@ def assemble(contents: MeshContents, bodies: list[Named], surfaces: list[Named])
     for kind, block in zip(kinds, found, strict=True):
         points, nodes = with_inner_nodes(points, block.nodes, kind)
         cells.append(nodes)
-    # nodes shared by both bodies are duplicated, otherwise the bodies would be tied
+    # nodes shared by several bodies are duplicated, otherwise the bodies would be tied
     original = len(points)
     cells = [nodes + i * original for i, nodes in enumerate(cells)]
     points = np.concatenate([points] * len(cells))
@@ -170,16 +170,22 @@ def _check_one_type(found: str, shapes: set[tuple[int, int]], dim: int) -> None:
 
 
 def _check_disjoint(found: list[CellBlock], bodies: list[Named]) -> None:
-    """Reject cells that belong to both bodies or occur twice."""
-    double = 0
+    """Reject cells that belong to several bodies or occur twice."""
+    double, owners = 0, set[int]()
     for corners in {block.corners for block in found}:
-        alike = [b.nodes[:, :corners] for b in found if b.corners == corners]
-        _, count = numbered(np.concatenate(alike))
+        alike = [i for i, block in enumerate(found) if block.corners == corners]
+        nodes = [found[i].nodes[:, :corners] for i in alike]
+        number, count = numbered(np.concatenate(nodes))
+        owner = np.repeat(alike, [len(of) for of in nodes])
         double += int((count - 1).sum())
+        owners |= set(owner[count[number] > 1].tolist())
     if double:
+        *others, last = (bodies[i].in_file for i in sorted(owners))
+        if not others:
+            raise CaseError(f"geometry.bodies: {double} cells occur twice in {last!r}")
         raise CaseError(
-            f"geometry.bodies: {double} cells are in both {bodies[0].in_file!r} and "
-            f"{bodies[1].in_file!r}, or twice in one of them"
+            f"geometry.bodies: {double} cells are in both {', '.join(map(repr, others))} and "
+            f"{last!r}, or twice in one of them"
         )
 
 
@@ -232,7 +238,7 @@ def divided(
         If a set is unknown, not within its body, or overlaps another one.
     """
     tags, taken = mesh.cell_tags.copy(), np.zeros(len(mesh.cell_tags), dtype=np.int64)
-    starts = np.searchsorted(mesh.cell_tags, [1, 2])
+    starts = np.searchsorted(mesh.cell_tags, np.arange(len(bodies)) + 1)
     for number, part in enumerate(sets, start=1):
         assert part.body is not None
         body, chosen = bodies[part.body], part.cells(contents)

@@ -120,7 +120,7 @@ def steady_pressure(
         raise ComputationError("no steady state: the sliding speed is 0 at some contact points")
     if not laws:
         raise ComputationError("no steady state: no body has a wear law")
-    if not any(distribution.share > 0 for distribution in spread):
+    if not any(np.any(distribution.share > 0) for distribution in spread):
         raise ComputationError(
             "no unique steady pressure: all wear is spread uniformly along tracks, which does not "
             "constrain it; let one body wear in place"
@@ -135,7 +135,7 @@ def steady_pressure(
         force_modes,
         load,
         local=_rate_sum(
-            bound, factors, np.array([[distribution.share] for distribution in spread])
+            bound, factors, np.array([np.broadcast_to(d.share, len(weights)) for d in spread])
         ),
         common=_common(bound, factors, spread),
     )

@@ -18,6 +18,7 @@ from scipy.spatial import cKDTree
 
 from ...results import FIELDS
 from .. import tables
+from ..files import contacts_of, name_at, picture, read_summary
 from .maps import is_surface
 from .panels import (
     MAP_STYLE,
@@ -50,7 +51,7 @@ class BodySection:
     points, displacement : ndarray, shape (n, 2) [mm]
     triangles : ndarray of int, shape (m, 3)
     body : ndarray of int, shape (m,)
-        Body of each triangle, 1 or 2.
+        Number of the body of each triangle, from 1.
     fields : dict of str to ndarray, shape (n,)
         Temperature, if there is one, and stress in the units of plots.
     """
@@ -73,7 +74,7 @@ class BodySection:
         axis.set(xlim=window[:2], ylim=window[2:])
         seen = inside(self.points, window, margin=1.0)[self.triangles].any(axis=1)
         drawn: list[Artist] = []
-        for number in (1, 2):
+        for number in np.unique(self.body):
             own = self.triangles[(self.body == number) & seen]
             colored = axis.tripcolor(
                 Triangulation(self.points[:, 0], self.points[:, 1], own),
@@ -127,22 +128,28 @@ def outline(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def draw_bodies(folder: Path) -> None:
     """Draw ``bodies.png`` (fields on the undeformed bodies) and ``deformed.png``.
 
-    In space also ``faces.png``.
+    In space also ``faces.png``, one for each contact of several bodies.
     """
     (_draw_solids if is_surface(folder) else _draw_sections)(folder)
 
 
 def _draw_sections(folder: Path) -> None:
     """Draw sections of 2D bodies, with a further window around a small contact."""
-    interface = tables.read(folder / "interface.csv")
-    section = read_section(folder / "fields.vtu")
-    contact = contact_window([interface], section.points)
+    interfaces = _interfaces(folder)
+    interface, section = interfaces[0], read_section(folder / "fields.vtu")
+    contact = contact_window(interfaces, section.points)
     windows = [whole(section.points), *([contact] if contact else [])]
     _draw_windows(folder / "bodies.png", section, interface, windows)
     factor = _magnification(section.points, section.displacement)
     section = section.displaced(factor)
     title = _title(factor)
     _draw_windows(folder / "deformed.png", section, interface, [whole(section.points)], title)
+
+
+def _interfaces(folder: Path) -> list[tables.TableColumns]:
+    """Contact points at the end, by contact."""
+    files = (name_at("interface", None, contact) for contact in contacts_of(folder))
+    return [tables.read(folder / file) for file in files]
 
 
 def _draw_windows(
@@ -181,12 +188,25 @@ def _draw_solids(folder: Path) -> None:
     from .faces import draw_faces
     from .solids import draw_solids, read_grid
 
-    interface, grid = tables.read(folder / "interface.csv"), read_grid(folder / "fields.vtu")
+    interfaces, grid = _interfaces(folder), read_grid(folder / "fields.vtu")
+    interface = interfaces[0]
     draw_solids(folder / "bodies.png", grid, interface)
-    draw_faces(folder / "faces.png", grid, interface)
+    for contact, face in zip(contacts_of(folder), interfaces, strict=True):
+        draw_faces(folder / picture("faces", contact), grid, face, _seen(folder, contact))
     factor = _magnification(grid.points, 1e3 * grid["displacement_m"])
     grid.points = grid.points + factor * 1e3 * grid["displacement_m"]
     draw_solids(folder / "deformed.png", grid, interface, _title(factor))
+
+
+def _seen(folder: Path, contact: str):
+    """Body that bears the face of a contact in its picture: the second one."""
+    from .faces import Seen
+
+    if not contact:
+        return Seen()
+    summary = read_summary(folder)
+    first, second = summary["contacts"][contact]["between"]
+    return Seen(1 + list(summary["bodies"]).index(second), f"{second}, seen from {first}")
 
 
 def _title(factor: float) -> str:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from .. import tables
-from ..files import read_summary, states
+from ..files import name_at, picture, read_summary, states
 from .panels import (
     BODIES,
     abscissa,
@@ -28,8 +30,8 @@ _DIRECTIONS = (("shape", "height of the unloaded face"), ("wear_rate", "wear rat
 
 
 def interface_panels(data: tables.TableColumns) -> list[list[str]]:
-    """Columns of ``interface.csv`` to draw, by panel: pressure, temperatures, shape if worn."""
-    shown = [["pressure"]]
+    """Columns of ``interface.csv`` to draw, by panel: pressures, temperatures, shape if worn."""
+    shown = [[name for name in ("pressure", "fluid_pressure") if name in data]]
     if np.isfinite(data["temperature_1"]).all():
         shown.append(["temperature_1", "temperature_2"])
     if np.ptp(data["shape"]) > _FLAT:
@@ -50,49 +52,82 @@ def final_time(folder: Path) -> float | None:
     return None
 
 
-def draw_interface(folder: Path) -> None:
+def draw_interface(folder: Path, contact: str = "") -> None:
     """Draw ``interface.png``: pressure, temperatures and shape along the contact."""
-    data = tables.read(folder / "interface.csv")
+    data = tables.read(folder / name_at("interface", None, contact))
     shown = interface_panels(data)
-    with column(folder / "interface.png", len(shown), 2.3) as axes:
+    with column(folder / picture("interface", contact), len(shown), 2.3) as axes:
         for axis, names in zip(axes, shown, strict=True):
             for name, color, line in zip(names, BODIES, ("-", "--"), strict=False):
-                plot_along(axis, data, name, line, color=color, label=f"body {name[-1]}")
-            axis.set_ylabel(data.quantities[names[0]].of_both.wrapped)
+                label = data.quantities[name].label.split(", ")[-1]
+                plot_along(axis, data, name, line, color=color, label=label)
+            both = data.quantities[names[0]].of_both
+            if "fluid_pressure" in names:
+                both = replace(both, label="pressure")
+            axis.set_ylabel(both.wrapped)
             if len(names) > 1:
                 axis.legend()
         from_zero(axes[0])
 
 
-def draw_wear(folder: Path) -> None:
+def coated_bodies(data: tables.TableColumns) -> list[str]:
+    """Columns of what is left of the coatings; empty without any, and in earlier results."""
+    names = ("coating_left_1", "coating_left_2")
+    return [name for name in names if name in data and np.isfinite(data[name]).any()]
+
+
+def draw_wear(folder: Path, contact: str = "") -> None:
     """Draw ``wear.png``: pressure and wear depth along the contact at the output times."""
+    found = _at_output_times(folder, contact)
+    bodies = worn_bodies(found[max(found)]) if found else []
+    if bodies:
+        shown = ["pressure", *bodies] if len(found) > 1 else bodies
+        _draw_states(folder / picture("wear", contact), found, shown, downwards=bodies)
+
+
+def draw_coating(folder: Path, contact: str = "") -> None:
+    """Draw ``coating.png``: what is left of the coatings at the output times."""
+    found = _at_output_times(folder, contact)
+    bodies = coated_bodies(found[max(found)]) if found else []
+    if bodies:
+        _draw_states(folder / picture("coating", contact), found, bodies)
+
+
+def _at_output_times(folder: Path, contact: str) -> dict[float, tables.TableColumns]:
+    """Contact points at the output times and at the end; empty for a run without time."""
     end = final_time(folder)
     if end is None:
-        return
-    files = {end: folder / "interface.csv"} | states(folder, "interface")
-    found = {time: tables.read(files[time]) for time in sorted(files)}
+        return {}
+    last = {end: folder / name_at("interface", None, contact)}
+    files = last | states(folder, "interface", contact)
+    return {time: tables.read(files[time]) for time in sorted(files)}
+
+
+def _draw_states(
+    path: Path,
+    found: dict[float, tables.TableColumns],
+    shown: list[str],
+    downwards: Sequence[str] = (),
+) -> None:
+    """Draw columns along the contact at several times, some of them downwards."""
     final = found[max(found)]
-    bodies = worn_bodies(final)
-    if not bodies:
-        return
-    shown = ["pressure", *bodies] if len(found) > 1 else bodies
-    with column(folder / "wear.png", len(shown), 3.0) as axes:
+    with column(path, len(shown), 3.0) as axes:
         for axis, name in zip(axes, shown, strict=True):
             for (time, data), color in zip(found.items(), time_colors(len(found)), strict=True):
                 plot_along(axis, data, name, color=color, label=f"{time:.4g} s")
             axis.set_ylabel(final.quantities[name].axis)
-            if name != "pressure":
+            if name in downwards:
                 axis.invert_yaxis()
         time_legend(axes[0])
 
 
-def draw_profile(folder: Path) -> None:
+def draw_profile(folder: Path, contact: str = "") -> None:
     """Draw ``profile.png``: worn shape and wear rates of a face that is not level."""
-    data = tables.read(folder / "profile.csv")
+    data = tables.read(folder / name_at("profile", None, contact))
     shown = [(name, label) for name, label in _DIRECTIONS if _depends_on_direction(data, name)]
     if not shown or not np.any(data["wear_rate"] > 0):
         return
-    with column(folder / "profile.png", len(shown), 2.6) as axes:
+    with column(folder / picture("profile", contact), len(shown), 2.6) as axes:
         for axis, (name, label) in zip(axes, shown, strict=True):
             plot_along(axis, data, name, "-", label="along the normal")
             plot_along(axis, data, f"{name}_along_press", "--", label="along the load direction")
@@ -148,70 +183,3 @@ def _at_times(folder: Path, stem: str) -> dict[str, Path]:
     """Files of a table at the output times and at the end, by the labels of their times."""
     files = {f"{time:.4g} s": path for time, path in states(folder, stem).items()}
     return files | {"end": folder / f"{stem}.csv"}
-
-
-def draw_history(folder: Path) -> None:
-    """Draw ``history.png``: largest pressure and, with wear, worn volume over time."""
-    data = tables.read(folder / "history.csv")
-    if len(data["time"]) < 2:
-        return
-    worn = [body for body in (1, 2) if data[f"wear_volume_{body}"][-1] > 0]
-    with column(folder / "history.png", 2 if worn else 1, 2.7, sharex=False) as (upper, *lower):
-        plot_columns(upper, data.rows(np.s_[1:]), "time", "max_pressure", color="tab:red")
-        upper.set_xscale("log")
-        from_zero(upper)
-        upper.set_xlabel(f"{data.quantities['time'].axis}, logarithmic")
-        for axis in lower:
-            _plot_bodies(axis, data, "time", "wear_volume", worn)
-            axis.legend()
-
-
-def draw_heat(folder: Path) -> None:
-    """Draw ``heat.png``: surface temperatures, friction power and largest pressure over time."""
-    heat = tables.read(folder / "heat.csv")
-    history = tables.read(folder / "history.csv")
-    if len(heat["time"]) < 2:
-        return
-    below = [(heat, "friction_power", "tab:green")] if np.any(heat["friction_power"]) else []
-    below.append((history, "max_pressure", "tab:red"))
-    options = {"margin": (0.0, 1.05), "height_ratios": (1.6, *[1] * len(below))}
-    with column(folder / "heat.png", 1 + len(below), 1.85, **options) as (upper, *others):
-        for body, color in enumerate(BODIES, 1):
-            for kind, word, line in (("max", "largest", "-"), ("mean", "mean", "--")):
-                style = {"color": color, "linestyle": line, "label": f"body {body}, {word}"}
-                plot_columns(upper, heat, "time", f"{kind}_temperature_{body}", **style)
-        upper.set_ylabel(f"surface\ntemperature [{heat.quantities['max_temperature_1'].unit}]")
-        upper.legend(ncols=2)
-        for axis, (data, name, color) in zip(others, below, strict=True):
-            plot_columns(axis, data, "time", name, color=color)
-            axis.set_ylabel(data.quantities[name].wrapped)
-            from_zero(axis)
-
-
-def draw_loads(folder: Path) -> None:
-    """Draw ``loads.png``: tangential force over displacement, and dissipated energy."""
-    data = tables.read(folder / "loads.csv")
-    with column(folder / "loads.png", 2, 2.8, sharex=False) as (upper, lower):
-        plot_columns(upper, data, "tangential_displacement", "tangential_force", color="tab:blue")
-        plot_columns(lower, data, "time", "dissipated", color="tab:red")
-
-
-def draw_cycles(folder: Path) -> None:
-    """Draw ``cycles.png``: largest wear depth and worn volume of both bodies over the cycles."""
-    data = tables.read(folder / "cycles.csv")
-    worn = [body for body in (1, 2) if data[f"wear_volume_{body}"].max(initial=0.0) > 0]
-    if not worn or len(data["cycle"]) < 2:
-        return
-    with column(folder / "cycles.png", 2, 2.5) as axes:
-        for axis, name in zip(axes, ("max_wear", "wear_volume"), strict=True):
-            _plot_bodies(axis, data, "cycle", name, worn)
-            from_zero(axis)
-        axes[0].legend()
-        axes[1].set_xlabel("cycles")
-
-
-def _plot_bodies(axis, data: tables.TableColumns, x: str, name: str, bodies: list[int]) -> None:
-    """Plot a quantity of several bodies."""
-    for body in bodies:
-        style = {"color": BODIES[body - 1], "label": f"body {body}"}
-        plot_columns(axis, data, x, f"{name}_{body}", **style)

@@ -1,8 +1,12 @@
-"""Contact face of body 2 of a 3D model: pressure, temperature, and the worn shape in relief."""
+"""Contact face of a body in space: pressure, temperature, and the worn shape in relief.
+
+It lies on body 2 of a pair, and on the second body of a contact of several ones.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pyvista
@@ -27,11 +31,25 @@ _ABOVE = (0.45, -1.0, 0.9)
 _RELIEF = 0.25  # height of the magnified shape relative to the face
 _WIDE = 1.8  # width of the view of a small face relative to it
 _LIFTED = 2e-3  # offset of the face from its body, relative to the face
-_BODY = "lightgray"  # grey of bodies without a field
+_GREY = "lightgray"  # grey of bodies without a field
 
 
-def draw_faces(path: Path, grid, interface: TableColumns) -> None:
-    """Draw the contact face on body 2, without body 1, and the worn shape.
+class Seen(NamedTuple):
+    """Body with the face that is drawn.
+
+    Attributes
+    ----------
+    number : int
+        Of the body, from 1.
+    title : str
+    """
+
+    number: int = 2
+    title: str = "body 2, body 1 removed"
+
+
+def draw_faces(path: Path, grid, interface: TableColumns, seen: Seen) -> None:
+    """Draw the contact face on one body, without all others, and the worn shape.
 
     Parameters
     ----------
@@ -40,16 +58,18 @@ def draw_faces(path: Path, grid, interface: TableColumns) -> None:
         Cells with the fields, see `read_grid`.
     interface : TableColumns
         Contact points.
+    seen : Seen
     """
     face = contact_face(interface)
-    body = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == 2))
+    body = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == seen.number))
     surface = body.clean(tolerance=1e-6 * body.length).extract_surface()
     focus = focus_on(interface, surface, _WIDE)
-    views = [_pressure(face, surface, focus, interface)]
+    outwards = 1.0 if face.center[2] >= surface.center[2] else -1.0
+    views = [_pressure(face, surface, focus, interface, outwards, seen.title)]
     if "temperature" in grid.point_data:
-        views.append(_temperature(surface, focus))
+        views.append(_temperature(surface, focus, outwards, seen.title))
     if np.ptp(face["shape"]) > 0.0:
-        views.append(_shape(face, interface))
+        views.append(_shape(face, interface, outwards))
     draw_views(path, [views])
 
 
@@ -76,39 +96,44 @@ def _size(face) -> float:
     return float(np.ptp(face.points[:, :2], axis=0).max())
 
 
-def _pressure(face, surface, focus, interface: TableColumns) -> View:
-    """Pressure on the face of body 2."""
+def _camera(outwards: float) -> tuple[float, float, float]:
+    """Direction of the camera from a face that looks upwards (1) or downwards (-1)."""
+    x, y, z = _ABOVE
+    return x, y, outwards * z
+
+
+def _pressure(face, surface, focus, interface: TableColumns, outwards: float, title: str) -> View:
+    """Pressure on the face of a body."""
     limits = color_limits(face["pressure"])
     shown = face.copy()
-    shown.points[:, 2] += _LIFTED * _size(face)
-    with rendering(_ABOVE, focus) as (plotter, picture):
-        plotter.add_mesh(surface, color=_BODY, **SHADING)
+    shown.points[:, 2] += outwards * _LIFTED * _size(face)
+    with rendering(_camera(outwards), focus) as (plotter, picture):
+        plotter.add_mesh(surface, color=_GREY, **SHADING)
         add_edges(plotter, surface)
         _add_face(plotter, shown, "pressure", limits)
     label, largest = interface.quantities["pressure"].axis, float(face["pressure"].max())
-    return View(cropped(picture[0]), "pressure", label, limits, largest, "body 2, body 1 removed")
+    return View(cropped(picture[0]), "pressure", label, limits, largest, title)
 
 
-def _temperature(surface, focus) -> View:
-    """Temperature of body 2, its contact face included."""
+def _temperature(surface, focus, outwards: float, title: str) -> View:
+    """Temperature of a body, its contact face included."""
     values = surface["temperature"]
     limits = color_limits(values)
-    with rendering(_ABOVE, focus) as (plotter, picture):
+    with rendering(_camera(outwards), focus) as (plotter, picture):
         add_surfaces(plotter, [surface], "temperature", limits)
     label = FIELDS["temperature"].axis
-    title = "body 2, body 1 removed"
     return View(cropped(picture[0]), "temperature", label, limits, float(values.max()), title)
 
 
-def _shape(face, interface: TableColumns) -> View:
+def _shape(face, interface: TableColumns, outwards: float) -> View:
     """Worn shape over the unworn face, magnified."""
     factor = magnification(_size(face), 1e-3 * face["shape"])
     limits = float(face["shape"].min()), float(face["shape"].max())
     worn, base = face.copy(), face.copy()
-    worn.points[:, 2] += factor * 1e-3 * face["shape"]
-    base.points[:, 2] -= _LIFTED * _size(face)
-    with rendering(_ABOVE) as (plotter, picture):
-        plotter.add_mesh(base, color=_BODY, **SHADING)
+    worn.points[:, 2] += outwards * factor * 1e-3 * face["shape"]
+    base.points[:, 2] -= outwards * _LIFTED * _size(face)
+    with rendering(_camera(outwards)) as (plotter, picture):
+        plotter.add_mesh(base, color=_GREY, **SHADING)
         _add_face(plotter, worn, "shape", limits)
     label = interface.quantities["shape"].axis
     title = f"shape magnified {factor:g} times"

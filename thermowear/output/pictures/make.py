@@ -11,24 +11,31 @@ from pathlib import Path
 
 from ...balances import violated
 from ...errors import CaseError, ComputationError
-from ..files import read_summary
+from ..files import contacts_of, name_at, picture, read_summary
 from ..tables import MissingColumnError
-from . import curves, maps
+from . import curves, maps, over_time
 from .animation import FPS, check_animation, has_frames
 from .modes import draw_modes
 
-_ALONG_A_LINE: dict[str, Callable[[Path], None]] = {
+_ALONG_A_LINE: dict[str, Callable[..., None]] = {
     "interface": curves.draw_interface,
     "profile": curves.draw_profile,
     "wear": curves.draw_wear,
+    "coating": curves.draw_coating,
 }
-_OVER_A_SURFACE = {"interface": maps.draw_interface_maps, "wear": maps.draw_wear_maps}
-_OTHERS = {
-    "history": curves.draw_history,
-    "heat": curves.draw_heat,
+_OVER_A_SURFACE: dict[str, Callable[..., None]] = {
+    "interface": maps.draw_interface_maps,
+    "wear": maps.draw_wear_maps,
+    "coating": maps.draw_coating_maps,
+}
+_OF_THE_INTERFACE = ("wear", "coating")
+"""Pictures drawn from ``interface.csv`` that have no table of their own."""
+_OTHERS: dict[str, Callable[..., None]] = {
+    "history": over_time.draw_history,
+    "heat": over_time.draw_heat,
     "friction": curves.draw_friction,
-    "loads": curves.draw_loads,
-    "cycles": curves.draw_cycles,
+    "loads": over_time.draw_loads,
+    "cycles": over_time.draw_cycles,
     "track": curves.draw_track,
     "mode": draw_modes,
 }
@@ -52,18 +59,19 @@ def make_pictures(folder: Path) -> list[str]:
     CaseError
         If the folder contains no results.
     """
-    if not (folder / "interface.csv").is_file():
-        raise CaseError(
-            f"{folder}: contains no interface.csv; not a results folder of a finished run"
-        )
+    contacts = contacts_of(folder)
+    needed = name_at("interface", None, contacts[0])
+    if not (folder / needed).is_file():
+        raise CaseError(f"{folder}: contains no {needed}; not a results folder of a finished run")
     notes = []
     first = _OVER_A_SURFACE if maps.is_surface(folder) else _ALONG_A_LINE
-    for name, draw in (first | _OTHERS).items():
+    each = [(name, draw, (contact,)) for contact in contacts for name, draw in first.items()]
+    for name, draw, contact in [*each, *((name, draw, ()) for name, draw in _OTHERS.items())]:
         try:
-            if name == "wear" or (folder / f"{name}.csv").is_file():
-                draw(folder)
+            if name in _OF_THE_INTERFACE or (folder / name_at(name, None, *contact)).is_file():
+                draw(folder, *contact)
         except MissingColumnError as reason:
-            notes.append(f"{folder}: no {name}.png, as {reason}")
+            notes.append(f"{folder}: no {picture(name, *contact)}, as {reason}")
     notes += [f"{folder}: not balanced: {line}" for line in violated(read_summary(folder))]
     if not (folder / "fields.vtu").is_file():
         return [*notes, f"{folder}: no fields.vtu, so no pictures of the bodies"]

@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.tri import Triangulation
 
 from .. import tables
-from .curves import final_time, interface_panels, worn_bodies
+from ..files import contacts_of, name_at, picture
+from .curves import coated_bodies, final_time, interface_panels, worn_bodies
 from .panels import MAP_STYLE, color_map, label_coordinates, panels
 
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
@@ -26,23 +27,36 @@ _SHORT = 0.1
 
 def is_surface(folder: Path) -> bool:
     """Test whether the contact points of a results folder form a surface, not a line."""
-    data = tables.read(folder / "interface.csv")
+    data = tables.read(folder / name_at("interface", None, contacts_of(folder)[0]))
     return "s" in data and bool(np.isnan(data["s"]).all())
 
 
-def draw_interface_maps(folder: Path) -> None:
+def draw_interface_maps(folder: Path, contact: str = "") -> None:
     """Draw ``interface.png``: pressure, temperatures and shape over the face."""
-    data = tables.read(folder / "interface.csv")
-    _draw(folder / "interface.png", data, list(chain.from_iterable(interface_panels(data))))
+    data = tables.read(folder / name_at("interface", None, contact))
+    _draw(
+        folder / picture("interface", contact),
+        data,
+        list(chain.from_iterable(interface_panels(data))),
+    )
 
 
-def draw_wear_maps(folder: Path) -> None:
+def draw_wear_maps(folder: Path, contact: str = "") -> None:
     """Draw ``wear.png``: wear depth of each body at the end of a transient analysis."""
     end = final_time(folder)
-    data = tables.read(folder / "interface.csv")
+    data = tables.read(folder / name_at("interface", None, contact))
     names = worn_bodies(data)
     if end is not None and names:
-        _draw(folder / "wear.png", data, names, f"wear after {end:.4g} s")
+        _draw(folder / picture("wear", contact), data, names, f"wear after {end:.4g} s")
+
+
+def draw_coating_maps(folder: Path, contact: str = "") -> None:
+    """Draw ``coating.png``: what is left of the coatings at the end of a transient analysis."""
+    end = final_time(folder)
+    data = tables.read(folder / name_at("interface", None, contact))
+    names = coated_bodies(data)
+    if end is not None and names:
+        _draw(folder / picture("coating", contact), data, names, f"coating after {end:.4g} s")
 
 
 def _draw(path: Path, data: tables.TableColumns, names: list[str], title: str = "") -> None:

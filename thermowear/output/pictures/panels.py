@@ -37,8 +37,10 @@ COLORS = {
     "temperature": "inferno",
     "von_mises": "viridis",
     "pressure": "viridis",
+    "fluid_pressure": "viridis",
     "shape": "cividis",
     "wear": "magma_r",
+    "coating_left": "cividis",
 }
 SMALL_CONTACT = 0.15
 """Size of a contact relative to the bodies, below which it gets its own window."""

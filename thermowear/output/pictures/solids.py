@@ -190,19 +190,22 @@ def cropped(picture: np.ndarray) -> np.ndarray:
 
 
 def clipped(grid, y: float) -> list:
-    """Surfaces of the bodies behind a plane normal to y, of body 2 and of body 1.
+    """Surfaces of the bodies behind a plane normal to y, from the last body to the first.
 
-    Body 1 is offset slightly backwards, so that the material worn off body 1 is hidden.
+    Each is offset slightly backwards from the one before, so that the material worn off body 1 of a
+    pair is hidden.
     """
     size = float(np.ptp(grid.points, axis=0).max())
     surfaces = []
-    for body in (2, 1):
+    bodies = np.unique(grid.cell_data["body"])[::-1]
+    for number, body in enumerate(bodies):
         solid = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == body))
         # merge coinciding samples of neighbouring cells, so that interior faces are no surface
         merged = solid.clean(tolerance=_MERGED * size)
         surface = merged.clip(normal=(0.0, -1.0, 0.0), origin=(0.0, y, 0.0)).extract_surface()
-        surface.points[:, 1] += (2 - body) * _DEPTH_OFFSET * size
-        surfaces.append(surface)
+        if surface.n_points:  # not wholly in front of the plane
+            surface.points[:, 1] += number * _DEPTH_OFFSET * size
+            surfaces.append(surface)
     return surfaces
 
 

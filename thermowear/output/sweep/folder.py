@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,10 @@ from .keys import Swept
 _OURS = ("sweep.csv", "shapes.png", "sweep.png", "run.json")
 _VARIANT = re.compile(r"\d{3,}")
 _INTERVAL = 1.0  # seconds between two updates of the table on disk
+
+
+_OF_PARTS = ("contacts", "holders", "bodies")
+"""Tables of a summary with numbers of the parts of a model of several bodies."""
 
 
 class SweepFolder:
@@ -73,11 +77,7 @@ class SweepFolder:
         seconds : float
             Wall time.
         """
-        numbers = {
-            name: value
-            for name, value in (summary or {}).items()
-            if isinstance(value, int | float) and not isinstance(value, bool)
-        }
+        numbers = dict(_numbers(summary or {}))
         self._rows[number] = status, numbers | {"seconds": round(seconds, 4)}
         if time.monotonic() - self._written > _INTERVAL:
             self._write_table()
@@ -122,6 +122,16 @@ class SweepFolder:
 
     def _write_run(self) -> None:
         write_json(self.path / "run.json", self._run)
+
+
+def _numbers(summary: dict[str, Any], above: str = "") -> Iterator[tuple[str, float]]:
+    """Numbers of a summary, those in tables by the paths of their keys."""
+    for name, value in summary.items():
+        if name in _OF_PARTS and isinstance(value, dict):
+            for part, numbers in value.items():
+                yield from _numbers(numbers, f"{name}.{part}.")
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            yield f"{above}{name}", value
 
 
 def is_sweep(folder: Path) -> bool:

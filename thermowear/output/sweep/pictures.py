@@ -69,13 +69,22 @@ def draw_sweep(folder: Path) -> list[str]:
     if not record.folders:
         return [f"{folder}: no variant was completed, so nothing is drawn"]
     layout, notes = lay_out(record), []
-    draw_contacts = _draw_maps if is_surface(record.folders[0]) else _draw_curves
-    for draw, name in ((draw_contacts, "shapes.png"), (_draw_numbers, "sweep.png")):
+    pictures = {}
+    if _is_pair(record):
+        in_space = is_surface(record.folders[0])
+        pictures["shapes.png"] = _draw_maps if in_space else _draw_curves
+    pictures["sweep.png"] = _draw_numbers
+    for name, draw in pictures.items():
         try:
             draw(layout, folder / name)
         except tables.MissingColumnError as reason:
             notes.append(f"{folder}: no {name}, as {reason}")
     return notes
+
+
+def _is_pair(record: VariantRecord) -> bool:
+    """True for variants of two bodies, with one contact."""
+    return all((folder / "interface.csv").is_file() for folder in record.folders)
 
 
 def _draw_curves(layout: Layout, path: Path) -> None:
@@ -218,8 +227,9 @@ def _plot_numbers(axis, layout: Layout, values: np.ndarray) -> None:
 
 def _numbers(record: VariantRecord) -> dict[str, np.ndarray]:
     """Numbers present in all variants, and the position of the largest pressure."""
-    data = (tables.read(folder / "interface.csv") for folder in record.folders)
-    places = np.array([d["x"][np.argmax(d["pressure"])] for d in data])
-    found = record.numbers | {_PLACE.header: places}
+    found = dict(record.numbers)
+    if _is_pair(record):
+        data = (tables.read(folder / "interface.csv") for folder in record.folders)
+        found[_PLACE.header] = np.array([d["x"][np.argmax(d["pressure"])] for d in data])
     known = {name: found[name] for name in _NUMBERS if name in found}
     return {name: v for name, v in known.items() if np.isfinite(v).all() and v.any()}

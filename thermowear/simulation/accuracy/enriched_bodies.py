@@ -20,13 +20,13 @@ from ...bulk.mechanics.surplus import surplus_spaces
 from ...contact.operators.heat import BaselineResponse
 from ...contact.operators.heat_exchange import InterfaceHeat
 from ...contact.operators.pressure import dense, scaled
-from ...contact.operators.traces import gap_trace, value_trace, vector_trace
+from ...contact.operators.traces import face_traces, gap_trace, vector_trace
 from ...model.conditions import Heat
 from ...parallel import sum_over_ranks
 from ..heat.friction_heat import TemperatureField
 from ..interface.body_state import BodyState, ContactState
 from ..system.building import supports
-from ..system.rigid_modes import surface_loads
+from ..system.rigid_modes import fluid_pressure, surface_loads
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem, conducting_parts, cooling
 
@@ -55,6 +55,7 @@ class EnrichedBodies:
         bodies = elastic.bodies
         surplus = surplus_spaces(bodies, degree, bodies.dim)
         clamped, *guided = supports(system.model)
+        clamped = (*clamped, *elastic.joints.surfaces)  # the details at a joint are not resolved
         held = [
             fixed_values(body, elastic.kinematics, space, clamped, guided)
             for body, space in zip(bodies.each, surplus.each, strict=True)
@@ -68,7 +69,7 @@ class EnrichedBodies:
             elastic.solve,
             (elastic.fixed, np.concatenate(held)),
         )
-        self._trace = sp.vstack([system.trace, gap_trace(surplus, system.pairing)])
+        self._trace = sp.vstack([system.trace, gap_trace(surplus, system.contacts)])
 
     def opening(self, contact: ContactState, state: BodyState, heated: TemperatureChange | None):
         """Change of the gap at the points by the next degree in a state, shape (n,) [m]."""
@@ -92,17 +93,21 @@ class EnrichedBodies:
         return sum_over_ranks(self._system.comm, self._trace.T @ field)
 
     def _loads(self, contact: ContactState) -> np.ndarray:
-        """Nodal loads of the contact and of the surface loads in the enriched space."""
+        """Nodal loads of the contact, fluid and surface loads in the enriched space."""
         system, problem = self._system, self._problem
         traction = contact.traction(system.with_friction(contact.conditions.friction))
+        fluid = fluid_pressure(system.model, system.contacts)
+        if fluid is not None:
+            traction = traction + fluid[:, None] * system.contacts.normals
         loads = np.concatenate(
             [
-                vector_trace(space, system.pairing, traction) @ system.weights
+                vector_trace(space, system.contacts, traction) @ system.weights
                 for space in (problem.spaces, problem.surplus)
             ]
         )
-        for works in surface_loads(system.model.holder, system.elastic):
-            loads = loads + problem.loads(works)
+        for holder in system.model.holders:
+            for works in surface_loads(holder, system.elastic):
+                loads = loads + problem.loads(works)
         return loads
 
 
@@ -114,17 +119,17 @@ def temperature_change(
     conductance: np.ndarray,
 ) -> TemperatureChange:
     """Change of steady temperatures by the next degree for a given friction heat; collective."""
-    conduction, face, pairing = thermal.conduction, thermal.face, system.pairing
+    conduction, face = thermal.conduction, thermal.face
     assert isinstance(face, InterfaceHeat)
     problem = _conducting(system, heat, thermal)
-    traces = [
-        sp.vstack([trace, value_trace(problem.surplus, side)])
-        for trace, side in zip(face.traces, pairing.sides, strict=True)
-    ]
+    details = face_traces(problem.surplus, system.contacts)
+    traces = [sp.vstack(both) for both in zip(face.traces, details, strict=True)]
     fluxes = zip(traces, temperatures.faces.flux, strict=True)
-    loads = sum(trace @ (face.weights * flux) for trace, flux in fluxes)
+    loads = np.sum([trace @ (face.weights * flux) for trace, flux in fluxes], axis=0)
+    nodal = loads[: conduction.spaces.owned]
+    nodal += conduction.joint_heat(temperatures.rise, nodal)
     before = problem.field(temperatures.rise)
-    change = problem.correction(problem.residual(before, np.asarray(loads)))
+    change = problem.correction(problem.residual(before, loads))
     uncoupled = np.array([sum_over_ranks(system.comm, trace.T @ change) for trace in traces])
     # the nodal space cannot represent the response to a flux that levels finer details
     weighted = scaled(face.weights, face.basis)
@@ -134,8 +139,8 @@ def temperature_change(
     none = np.zeros(len(face.weights))
     coupled = exchange.state(none, BaselineResponse((resolved[:, 0], resolved[:, 1])))
     change[: conduction.spaces.owned] += conduction.respond(face.nodal_heat(coupled, bath=True))
-    details = _levelled(uncoupled - resolved.T, face, conductance)
-    return TemperatureChange(np.array(coupled.rise) + details, problem.functions(before + change))
+    finer = _levelled(uncoupled - resolved.T, face, conductance)
+    return TemperatureChange(np.array(coupled.rise) + finer, problem.functions(before + change))
 
 
 def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -> np.ndarray:
@@ -143,9 +148,10 @@ def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -
 
     Approximation: each point has a resistance of its own in either body, its rise per own flux.
     """
-    pairs = zip(face.values, face.response, strict=True)
-    diagonals = [values.multiply(values @ response).sum(axis=1) for values, response in pairs]
-    own = np.abs(face.weights * np.array(diagonals))
+    own = np.zeros_like(rises)
+    for nodes, response in zip(face.nodes, face.response, strict=True):
+        own += [values.multiply(values @ response).sum(axis=1) for values in nodes.values]
+    own = np.abs(face.weights * own)
     with np.errstate(divide="ignore"):
         flux = (rises[1] - rises[0]) / (own.sum(axis=0) + 1 / conductance)
     return rises + own * flux * np.array([[1.0], [-1.0]])
@@ -164,9 +170,14 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
         ]
         for body in bodies.each
     ]
-    shifts = dict(zip(model.interface.faces, thermal.face.shifts, strict=True))
+    shifts = {
+        name: float(shift[points.start])
+        for interface, points in zip(model.interfaces, system.contacts.ranges, strict=True)
+        for name, shift in zip(interface.faces, thermal.face.shifts, strict=True)
+    }
     bath = [transferring(body, kinematics, shifts) for body in bodies.each]
-    given, _ = given_rises(bodies, surplus, dict.fromkeys(heat.temperature, 0.0), None)
+    left_out = *heat.temperature, *conduction.joints.surfaces
+    given, _ = given_rises(bodies, surplus, dict.fromkeys(left_out, 0.0), None)
     return EnrichedProblem(
         conduction.spaces, surplus, terms, conduction.respond, (conduction.fixed, given), bath
     )

@@ -23,7 +23,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...contact.operators.coupled_heat import CoupledHeat
-from ...contact.search.face import Surface
 from ...contact.search.pairing import pair
 from ...contact.solvers.enriched_pressure import enriched_pressure
 from ...errors import CaseError, ComputationError
@@ -155,14 +154,18 @@ def _of_temperature(end: Snapshot, heated: TemperatureChange) -> float | None:
 def _of_shape(end: Snapshot, opened: np.ndarray, steady: bool) -> float | None:
     system, interface = end.system, end.interface
     worn = np.any([interface.wear_1, interface.wear_2]) or steady
-    pressing, scale = interface.pressure > 0, float(np.ptp(interface.shape))
-    flat = scale <= _FLAT * np.abs(end.bodies.opening).max(initial=0.0)
-    if not worn or flat or not pressing.any():
+    pressing = interface.pressure > 0
+    flat = _FLAT * np.abs(end.bodies.opening).max(initial=0.0)
+    shaped = [points for points in system.contacts.ranges if np.ptp(interface.shape[points]) > flat]
+    if not worn or not shaped or not pressing.any():
         return None
     modes, change = system.holder.modes[pressing], opened[pressing]
     roots = np.sqrt(system.weights[pressing])
     motion = np.linalg.lstsq(modes * roots[:, None], change * roots, rcond=None)[0]
-    return _FOLLOWING * float(np.abs(change - modes @ motion).max()) / scale
+    left = np.zeros(len(opened))
+    left[pressing] = np.abs(change - modes @ motion)
+    own = [left[points].max() / np.ptp(interface.shape[points]) for points in shaped]
+    return _FOLLOWING * float(max(own))
 
 
 def _of_edges(system: System, interface: InterfaceFields) -> float:
@@ -170,15 +173,17 @@ def _of_edges(system: System, interface: InterfaceFields) -> float:
 
     Enrichment does not detect that error, as the worn gap is the same.
     """
-    weights, side = system.weights, system.pairing.sides[0]
-    if isinstance(side.face, Surface) or not np.any([interface.wear_1, interface.wear_2]):
+    weights, facet = system.weights, system.contacts.facet
+    if system.contacts.in_space or not np.any([interface.wear_1, interface.wear_2]):
         return 0.0
     pressure = interface.pressure
-    pressing = np.concatenate([[pressure[0] > 0.0], pressure > 0.0, [pressure[-1] > 0.0]])
-    last = (pressure > 0.0) & ~(pressing[:-2] & pressing[2:])
-    largest = np.zeros(side.facet.max() + 1)
-    np.maximum.at(largest, side.facet, weights)
-    return float(pressure[last] @ largest[side.facet[last]] / 2 / (weights @ pressure))
+    last = np.zeros(len(pressure), dtype=bool)
+    for own in system.contacts.ranges:
+        pressing = np.pad(pressure[own] > 0.0, 1, mode="edge")
+        last[own] = pressing[1:-1] & ~(pressing[:-2] & pressing[2:])
+    largest = np.zeros(facet.max() + 1)
+    np.maximum.at(largest, facet, weights)
+    return float(pressure[last] @ largest[facet[last]] / 2 / (weights @ pressure))
 
 
 def _of_pressure(system: System, pressure: np.ndarray, enriched: np.ndarray) -> tuple[float, float]:
@@ -191,12 +196,13 @@ def _of_pressure(system: System, pressure: np.ndarray, enriched: np.ndarray) -> 
 def _enriched_pressure(end: Snapshot, bodies: EnrichedBodies, opened: np.ndarray) -> np.ndarray:
     """Pressure of an enriched discretisation at the contact points, shape (n,) [Pa]."""
     system, interface = end.system, end.interface
-    if system.model.interface.pressure_degree == "lobatto":
+    model = system.model
+    if any(one.pressure_degree == "lobatto" for one in model.interfaces):
         raise ComputationError('not estimated for contact.pressure_degree = "lobatto"')
     return enriched_pressure(
-        system.pairing,
+        system.contacts,
         system.influence,
-        system.model.pressure_degree,
+        [model.pressure_degree(one) + 1 for one in model.interfaces],
         system.holder,
         interface.pressure,
         interface.gap + opened,
@@ -214,7 +220,7 @@ def _wear_per_pressure(system: System, interface: InterfaceFields) -> np.ndarray
     """
     pressing = interface.pressure > 0
     mean = np.average(interface.pressure[pressing], weights=system.weights[pressing])
-    facet = system.pairing.sides[0].facet
+    facet = system.contacts.facet
     least = np.full(facet.max() + 1, np.inf)
     depth = interface.wear_1 + interface.wear_2
     np.minimum.at(least, facet, depth)
@@ -228,7 +234,7 @@ def _finer_principle(system: System, contact: ContactState) -> np.ndarray:
     if any("T" in law.variables for law in system.laws.values()):
         raise ComputationError("not estimated where wear depends on the temperature")
     coarse, fine = (
-        principle(each, each.holder.load, speed=each.speed, friction=each.friction)
+        principle(each, contact.conditions.load, speed=each.speed, friction=each.friction)
         for each in (system, _finer(system))
     )
     velocity = system.holder.modes @ coarse.velocity
@@ -253,9 +259,13 @@ def _exponent(system: System, pressure: np.ndarray, conditions: InterfaceConditi
 def _finer(system: System) -> System:
     """System with more contact points, for the steady-state principle only."""
     model, kinematics = system.model, system.elastic.kinematics
-    face_1, face_2 = (side.face for side in system.pairing.sides)
-    lobatto = model.interface.pressure_degree == "lobatto"
-    order = model.discretisation.degree + (2 if lobatto else 3)
-    pairing = pair(face_1, face_2, kinematics, order, refine=not lobatto)
+    finer = []
+    for interface, coarse in zip(model.interfaces, system.contacts.each, strict=True):
+        face_1, face_2 = (side.face for side in coarse.sides)
+        lobatto = interface.pressure_degree == "lobatto"
+        order = model.discretisation.degree + (2 if lobatto else 3)
+        finer.append(pair(face_1, face_2, kinematics, order, refine=not lobatto))
     driven = system.holder.rigid_modes
-    return replace(system, pairing=pairing, **sliding_contact(model, kinematics, pairing, driven))
+    contacts = replace(system.contacts, each=tuple(finer))
+    contact = sliding_contact(model, kinematics, contacts, driven)
+    return replace(system, contacts=contacts, **contact)

@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...errors import ComputationError
-from ...model.analyses import Analysis, FrettingAnalysis, ReciprocatingAnalysis
+from ...errors import CaseError, ComputationError
+from ...model.analyses import (
+    Analysis,
+    FrettingAnalysis,
+    ReciprocatingAnalysis,
+    TransientAnalysis,
+)
 from ...results import InterfaceFields
 from ..geometry_update.outer_loop import GapWear
 from ..results.recording import Snapshot
@@ -18,6 +23,44 @@ _BACK = 1e-9
 """Rounding tolerance of the position, relative to the size of the face."""
 _STEEP = -0.75
 """Largest cosine between the outward normals where faces press; up to -0.5 they are paired."""
+_NO_CLOSURE = 1e-9
+"""Relative closure of the gap, below which a motion counts as one that no contact resists."""
+
+
+def require_support(system: System) -> None:
+    """Reject several bodies whose holders can move together without closing any gap.
+
+    Raises
+    ------
+    CaseError
+    """
+    modes = system.holder.modes
+    if system.model.is_pair or not modes.shape[1]:
+        return
+    sizes = np.linalg.norm(modes, axis=0)
+    sizes[sizes == 0.0] = 1.0
+    values, directions = np.linalg.eigh(modes.T @ modes / np.outer(sizes, sizes))
+    if values[0] > _NO_CLOSURE:
+        return
+    names = np.array([f"{h.name} ({name})" for h in system.model.holders for name in h.free])
+    moving = names[system.holder.free][np.abs(directions[:, 0]) > 0.1 / len(sizes)]
+    raise CaseError(
+        f"holders: the free motions {', '.join(moving)} together close no gap, so that nothing "
+        "carries their loads; fix one of these holders (free = []), or give its approach"
+    )
+
+
+def require_no_fluid(system: System, analysis: Analysis) -> None:
+    """Reject a fluid between the faces in analyses of faces that move back and forth.
+
+    Raises
+    ------
+    CaseError
+    """
+    wet = [one.table for one in system.model.interfaces if one.fluid_pressure is not None]
+    if wet and analysis.type in ("fretting", "reciprocating"):
+        text = f"is not supported in a {analysis.type} analysis"
+        raise CaseError(f"{wet[0]}.fluid_pressure: {text}")
 
 
 def moved_against_load(
@@ -25,15 +68,17 @@ def moved_against_load(
 ) -> ComputationError | None:
     """Error for a holder that has moved against its load; None if it has not.
 
-    Without heat and loads on surfaces, ``F·d = ∫ p g dA + ∫ p A p dA``: the loads do positive work
-    on the holder unless the drawn faces overlap.
+    Without heat, fluid and loads on surfaces, ``F·d = ∫ p g dA + ∫ p A p dA``: the loads do
+    positive work on the holder unless the drawn faces overlap.
     """
+    if not system.model.is_pair:
+        return None
     holder, pairing = system.model.holder, system.pairing
     if analysis.type not in _ANALYSES or system.thermal is not None or holder.surface_forces:
         return None
-    if holder.force is None or system.worn is not None:
+    if holder.force is None or system.worn is not None or system.model.interface.fluid_pressure:
         return None
-    back = -applied(holder, end.motion) / holder.force
+    back = -applied(holder, end.motions[0]) / holder.force
     if back <= _BACK * pairing.extent:
         return None
     pressing = end.contact.pressure > 0
@@ -47,8 +92,11 @@ def moved_against_load(
 
 def inclined_faces(system: System, pressure: np.ndarray) -> str | None:
     """Note on contact of faces far from parallel; None if there is none."""
-    first, second = (side.face.normals(side.facet, side.t) for side in system.pairing.sides)
-    cosine = np.einsum("ni,ni->n", first, second)[pressure > 0].max(initial=-1.0)
+    cosine = -1.0
+    for pairing, points in system.contacts:
+        first, second = (side.face.normals(side.facet, side.t) for side in pairing.sides)
+        opposed = np.einsum("ni,ni->n", first, second)[pressure[points] > 0]
+        cosine = max(cosine, float(opposed.max(initial=-1.0)))
     if cosine <= _STEEP:
         return None
     angle = 180 - np.degrees(np.arccos(cosine))
@@ -70,12 +118,16 @@ def open_contact(system: System, interface: InterfaceFields) -> ComputationError
     ComputationError, str or None
         Error, note, or None with contact.
     """
-    if interface.pressure.max() > 0.0:
+    each = zip(system.model.interfaces, system.contacts.ranges, strict=True)
+    apart_at = [one.name for one, own in each if not interface.pressure[own].max() > 0.0]
+    if not apart_at:
         return None
+    if len(apart_at) < len(system.model.interfaces):
+        return f"nothing touches at the end in the contacts: {', '.join(apart_at)}"
     gap = np.nanmin(interface.gap, initial=np.inf)
     apart = f"; the faces are {1e6 * gap:.4g} µm apart at least" if np.isfinite(gap) else ""
-    holder = system.model.holder
-    force = holder.force if holder.history is None else None
+    given = [h.force for h in system.model.holders if h.history is None and h.force is not None]
+    force = max(given, default=None)
     if force is None:
         return f"nothing touches at the end{apart}"
     return ComputationError(f"nothing carries the pressing force of {force:.4g} N{apart}")
@@ -84,21 +136,25 @@ def open_contact(system: System, interface: InterfaceFields) -> ComputationError
 def deep_wear(system: System, analysis: Analysis, interface: InterfaceFields) -> str | None:
     """Note on an analysis without mesh motion that leaves the small-wear regime; every rank calls.
 
-    In reciprocating sliding the depths are those at mid-stroke of body 1.
+    Meshes are not moved in fretting and reciprocating analyses and in models of several bodies. In
+    reciprocating sliding the depths are those at mid-stroke of body 1.
 
     Returns
     -------
     str or None
         None if the wear is small, or declared small by ``wear.update = "never"``.
     """
-    if not isinstance(analysis, FrettingAnalysis | ReciprocatingAnalysis):
+    if not isinstance(analysis, FrettingAnalysis | ReciprocatingAnalysis) and (
+        system.model.is_pair or not isinstance(analysis, TransientAnalysis)
+    ):
         return None
     allowed = analysis.largest_kept
     fraction = GapWear(system).fraction(np.array([interface.wear_1, interface.wear_2]))
     if fraction <= allowed:
         return None
+    kind = f"a {analysis.type} analysis" + (" of several bodies" * (not system.model.is_pair))
     return (
-        f"the wear, which a {analysis.type} analysis keeps in the gap, comes to {fraction:.2%} of "
-        "the thickness behind the face or of its radius of curvature, or tilts elements by ten "
+        f"the wear, which {kind} keeps in the gap, comes to {fraction:.2%} "
+        "of the thickness behind the face or of its radius of curvature, or tilts elements by ten "
         f"times that: pressures and shapes are those of small wear, up to {allowed:.2%}"
     )

@@ -81,7 +81,7 @@ class GrowthModel:
         self._fields = np.zeros((len(system.thermal.conduction.fixed), 0))
         self._crossing = np.zeros((len(system.weights), 0))
         self._rates: list[float] = []
-        slowest = self._thermal.diffusivity / self._system.pairing.extent**2
+        slowest = self._thermal.diffusivity / min(p.extent for p in self._system.contacts.each) ** 2
         for rate in (0.0, *(part * slowest for part in _SPREAD)):
             self.add(rate)
 
@@ -132,6 +132,8 @@ class GrowthModel:
         weights = system.weights[:, None]
         f = np.reshape(thermal.face.partition, (-1, 1))
         exchanged = weights * self._crossing  # each field satisfies the interface heat law
+        kept = self._product(conduction.conductivity, X) + (T2 - T1).T @ exchanged
+        kept += conduction.joints.passed(conduction.spaces, X)
         carried = np.zeros((X.shape[1],) * 2)
         if conduction.advection is not None:
             carried = self._product(conduction.advection.carried, X)
@@ -139,7 +141,7 @@ class GrowthModel:
             elastic=space(self._elastic),
             opening=space.gaps.T @ system.thermal_opening.of([X]),
             heated=(f * T1 + (1 - f) * T2).T @ (weights * self._friction),
-            conducted=self._product(conduction.conductivity, X) - carried + (T2 - T1).T @ exchanged,
+            conducted=kept - carried,
             carried=carried,
             stored=self._product(conduction.capacity, X),
         )

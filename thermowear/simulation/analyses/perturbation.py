@@ -109,8 +109,7 @@ class PerturbedContact:
 
     def _at(self, factor: float) -> PerturbedContact:
         """Perturbed contact at another speed."""
-        model = self._system.model
-        model = replace(model, motion=model.motion.faster(factor))
+        model = self._system.model.faster(factor)
         system = build(model, self._system.comm, self._system.phases, parts=self._system.parts)
         conditions = replace(self._conditions, speed=factor * self._conditions.speed)
         return PerturbedContact(system, self._pressure, conditions)
@@ -128,7 +127,7 @@ class PerturbedContact:
     def _elastic(self) -> np.ndarray:
         """Compliance A of the bodies and of the soft layer between the faces."""
         contact = self._system.contact
-        return contact.compliance + self._system.softness * contact.mass
+        return contact.compliance + self._system.model.interface.compliance * contact.mass
 
     @cached_property
     def _thermal(self) -> np.ndarray:

@@ -12,7 +12,6 @@ from numpy.linalg import LinAlgError
 
 from ...balances import judged
 from ...bulk.multigrid_solver import MultigridSolver
-from ...contact.operators.pressure import jumps
 from ...errors import CaseError, ComputationError
 from ...model.analyses import (
     Analysis,
@@ -33,15 +32,21 @@ from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
 from ..system.setup_cache import SetupCache, inputs
 from ..system.system import System
-from .checks import deep_wear, inclined_faces, moved_against_load, open_contact
+from .checks import (
+    deep_wear,
+    inclined_faces,
+    moved_against_load,
+    open_contact,
+    require_no_fluid,
+    require_support,
+)
 from .positioning import prepare
 from .static import initial, stability, steady
 from .transient import TransientHistory
+from .wearing_faces import wearing_faces
 
 _UNPAIRED = 1e-6
-_CYCLIC = "fretting", "reciprocating"
-_NOT_ESTIMATED = "the discretisation error is not estimated where bodies are solved by multigrid"
-_SKIPPED = {"all": "not estimated where bodies are solved by multigrid"}
+_OF_SEVERAL = "initial", "steady", "transient"
 
 
 def run(
@@ -118,20 +123,24 @@ def analyse(
     Starts anew, or from the checkpoint of an analysis of the same system.
     """
     choice = system.choice
-    if analysis.type in _CYCLIC and jumps(system.pairing):
+    if analysis.type not in _OF_SEVERAL and not system.model.is_pair:
         raise CaseError(
-            f"a {analysis.type} analysis does not support contact faces of several materials that "
-            "wear by different laws"
+            f"a {analysis.type} analysis is for two bodies with one interface; for several bodies "
+            f"there are: {', '.join(_OF_SEVERAL)}"
         )
+    system = wearing_faces(system, analysis, observer)
+    require_support(system)
+    require_no_fluid(system, analysis)
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:
             observer.note(note)
-    if system.pairing.unpaired > _UNPAIRED:
-        percent = 100 * system.pairing.unpaired
-        observer.note(
-            f"{percent:.2g} % of the contact face of body 1 has nothing opposite and "
-            "stays out of the contact"
-        )
+    for pairing in system.contacts.each:
+        if pairing.unpaired > _UNPAIRED:
+            face = f"of {pairing.sides[0].face.name}" if len(system.contacts.each) > 1 else ""
+            observer.note(
+                f"{100 * pairing.unpaired:.2g} % of the contact face {face or 'of body 1'} has "
+                "nothing opposite and stays out of the contact"
+            )
     if isinstance(analysis, StaticAnalysis):
         end, result = _STATIC[analysis.type](system, observer)
     else:
@@ -174,7 +183,7 @@ def _factorised_conduction(system: System) -> str | None:
 
 def _streamed(system: System, analysis: Analysis) -> str | None:
     """Note on the response of the gap to temperatures, where it is needed and not stored."""
-    needed = system.model.interface.method.name == "condensed" and not (
+    needed = system.model.method == "condensed" and not (
         system.choice.single and needs_single_solution(system.model, analysis)
     )
     return system.opening_storage.note() if needed else None
@@ -183,8 +192,8 @@ def _streamed(system: System, analysis: Analysis) -> str | None:
 def _iterations(system: System) -> dict[str, int]:
     """Largest numbers of multigrid iterations of a solution, if there are any."""
     thermal = system.thermal
-    solvers = {
-        "elasticity": [body.factor for body in system.elastic.each],
+    solvers: dict[str, list] = {
+        "elasticity": [group.factor for group in system.elastic.groups],
         "conduction": [] if thermal is None else [thermal.conduction.factor],
     }
     counted = {
@@ -199,8 +208,10 @@ def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Obse
     if result.stopped is not None:
         return result
     if end.system.choice.iterative:
-        observer.note(_NOT_ESTIMATED)
-        return replace(result, summary=result.summary | {"error_estimate_missing": _SKIPPED})
+        why = "where bodies are solved by multigrid"
+        observer.note(f"the discretisation error is not estimated {why}")
+        missing = {"error_estimate_missing": {"all": f"not estimated {why}"}}
+        return replace(result, summary=result.summary | missing)
     try:
         estimates = estimate_errors(analysis, end)
     except (CaseError, ComputationError, LinAlgError) as error:  # the result is valid without it

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from ...errors import ComputationError
-from ...laws.motions import combined
 from ...laws.principle.least_worn import least_worn
 from ...laws.stability import Rate
 from ...results import Modes, Result
@@ -61,11 +61,13 @@ def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     opening = state.opening + system.softness * wear.pressure
     position = least_worn(system.holder.modes, opening, system.weights, pressing)
     height = system.holder.modes @ position - opening
-    shape = height[pressing].max() - height
+    shape = np.concatenate(
+        [height[own][pressing[own]].max() - height[own] for own in system.contacts.ranges]
+    )
     end = record(
         system,
         contact,
-        combined(system.holder.motions, position),
+        system.motions(system.holder.amplitudes(position)),
         state,
         gap=np.where(pressing, 0.0, np.nan),
         shape=shape,
@@ -79,13 +81,16 @@ def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     return conclude(end, extra)
 
 
-def wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, float | None]:
-    """Rigid-body wear velocities of the free holder modes, by summary key [m/s, rad/s]."""
-    found: dict[str, float | None] = {_VELOCITIES["z"]: None}
-    if velocity is not None:
-        names = system.model.holder.free
-        found |= {_VELOCITIES[k]: float(v) for k, v in zip(names, velocity, strict=True)}
-    return found
+def wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, Any]:
+    """Rigid-body wear velocities of the free modes of the holders, by summary key [m/s, rad/s]."""
+    found: dict[str, Any] = {}
+    for holder, modes in zip(system.model.holders, system.modes_of_holders, strict=True):
+        own: dict[str, float | None] = {_VELOCITIES["z"]: None}
+        found[holder.name] = own
+        if velocity is not None:
+            pairs = zip(holder.free, velocity[modes], strict=True)
+            own |= {_VELOCITIES[name]: float(value) for name, value in pairs}
+    return found[system.model.holder.name] if system.model.is_pair else {"holders": found}
 
 
 def stability(system: System, observer: Observer) -> tuple[Snapshot, Result]:
@@ -175,7 +180,7 @@ def _keys(
 
 def _table(system: System, modes: list[PerturbationMode]) -> Modes:
     """Table of mode pressures at the contact points, each normalised to a largest value of 1."""
-    points, s = system.pairing.points, system.pairing.position
+    points, s = system.contacts.points, system.contacts.position
     places = [*np.pad(points, ((0, 0), (0, 3 - points.shape[1]))).T, s]
     tables = [np.zeros((10, 0))]
     for number, mode in enumerate(modes, 1):

@@ -10,13 +10,15 @@ import numpy as np
 from ...balances import ALLOWED, require
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
-from ...results import HeatRow, HistoryRow
+from ...results import ContactRow, HeatRow, HistoryRow
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.wider_zone import ends_outside_zone
 from ..heat.friction_heat import FrictionHeat
 from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
+from ..results.coatings import Face, WearingState, layers, times_since_worn_through
+from ..results.contact_rows import contact_rows
 from ..results.recording import Snapshot, snapshot_at
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
@@ -37,14 +39,15 @@ def _principle(settings: TransientAnalysis, system: System) -> SteadyState | Non
     """Steady state that a transient analysis approaches; None if there is none.
 
     There is none unless all holder modes are free, for a growing contact, for inputs given over
-    time, for wear laws that depend on the depth, or if the principle has no solution.
+    time, for wear laws that depend on the depth, or if the principle has no solution. Faces with
+    layers approach that of their substrates.
     """
     free, grows = system.holder.free, any(ends_outside_zone(system))
     if not (len(free) and free.all()) or (grows and settings.until is None):
         return None
     if system.model.histories or not system.laws:
         return None
-    if any("depth" in law.variables for law in system.laws.values()):
+    if any("depth" in law.variables for law in system.worn_through().laws.values()):
         return None
     try:
         return steady_state(system)
@@ -70,34 +73,40 @@ class TransientHistory(AnalysisHistory[Moment]):
         problem = interface_problem(system, observer.note)
         sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
         self.loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
-        self._speed = 0.0
+        self._speed, self._is_pair = 0.0, system.model.is_pair
+        self._coated = layers(system.model).keys()
+        self._lost: dict[Face, tuple[float, float]] = {}
         self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
 
     def restart_data(self) -> tuple:
-        """Mean sliding speed [m/s], and data of the outer loop and of nonlinear heat."""
+        """Mean sliding speed [m/s], data of the outer loop and of nonlinear heat, lost layers."""
         heat = self.loop.now.problem.heat
         own = None if heat is None else heat.steps.restart_data()
-        return self._speed, self.loop.restart_data(), own
+        return self._speed, self.loop.restart_data(), own, self._lost
 
     def restore(self, data: tuple) -> None:
-        self._speed, loop, own = data
+        self._speed, loop, own, *lost = data  # checkpoints of earlier versions have no layers
+        known = lost[0] if lost else {}  # or those of the only interface, by side
+        self._lost = {k if isinstance(k, tuple) else (0, k): each for k, each in known.items()}
         self.loop.restore(loop)
         if self.loop.now.problem.heat is not None and own is not None:
             self.loop.now.problem.heat.steps.restore(own)
 
-    def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow]:
+    def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow | ContactRow]:
         problem = self.loop.now.problem
         conditions = problem.conditions(state.state, state.time)
         speed = self._mean(conditions.speed)
         slid = state.step * (self._speed + speed) / 2  # steps end at kinks of the speed
         self._speed = speed
         row = self._row(state, slid)
+        self._note_lost_layers(conditions, state, slid, row)
+        each = self._contact_rows(conditions, state)
         if problem.heat is None or not problem.stores_heat:
-            return [row]
+            return [row, *each]
         heat = self._heat_row(state, conditions, problem.heat)
         if not heat.balance_error <= ALLOWED:
             require(heat_balance_relative_error=heat.balance_error)
-        return [row, heat]
+        return [row, heat, *each]
 
     def states(self, last: Moment | None) -> Iterator[Moment]:
         """Accepted moments while the faces are below any melting point.
@@ -130,7 +139,8 @@ class TransientHistory(AnalysisHistory[Moment]):
         result = {
             "steps": len(rows) - 1,
             "time_s": rows[-1].time,
-            "distance_from_steady": None if steady is None else self.last.distance,
+            "distance_from_steady": None if np.isnan(self.last.distance) else self.last.distance,
+            **self._lost_layers(),
             **loop.summary(),
             **wear_velocity(loop.now.system, None if steady is None else steady.wear.velocity),
         }
@@ -144,6 +154,20 @@ class TransientHistory(AnalysisHistory[Moment]):
             "peak_temperature_K": peak.max_temperature,
             "peak_temperature_time_s": peak.time,
         }
+
+    def _lost_layers(self) -> dict:
+        """Time and distance at which each coated face first lost all layers; None if not yet."""
+        model = self._system.model
+        found: dict[str, dict] = {}
+        for index, side in self._coated:
+            time, distance = self._lost.get((index, side), (None, None))
+            found.setdefault(model.interfaces[index].name, {}).update(
+                {
+                    f"worn_through_time_{side + 1}_s": time,
+                    f"worn_through_distance_{side + 1}_m": distance,
+                }
+            )
+        return found.get("", {}) if model.is_pair else {"contacts": found}
 
     def _runs_away(self) -> bool:
         """True if the faces heat up much faster than before (thermal runaway)."""
@@ -171,6 +195,20 @@ class TransientHistory(AnalysisHistory[Moment]):
             step=moment.step,
             error=moment.error,
         )
+
+    def _note_lost_layers(self, conditions, moment: Moment, slid: float, row: HistoryRow) -> None:
+        """Keep the time and the sliding distance at which a face first lost all its layers."""
+        now, known = self.loop.now, self._lost
+        if known.keys() >= self._coated:
+            return
+        end, begin, last = WearingState(moment.state, conditions), None, self._last
+        if last is not None and last.state.worn.shape == moment.state.worn.shape:
+            begin = WearingState(last.state, now.problem.conditions(last.state, last.time))
+        times = times_since_worn_through(now.system, end, begin, moment.step)
+        self._lost = {
+            index: (moment.time - time, row.sliding_distance - slid * time / moment.step)
+            for index, time in times.items()
+        } | known
 
     def _hottest(self, state: InterfaceState) -> float:
         """Highest temperature of both faces [K]; NaN without heat."""
@@ -202,13 +240,20 @@ class TransientHistory(AnalysisHistory[Moment]):
             mean_temperature_2=self._mean(T2),
         )
 
+    def _contact_rows(self, conditions: InterfaceConditions, moment: Moment) -> list[ContactRow]:
+        """Rows of the contacts of several bodies."""
+        if self._is_pair:
+            return []
+        now = self.loop.now
+        ambient = float("nan") if now.problem.heat is None else now.problem.heat.ambient
+        pressing = self._force_per_pressure(conditions)
+        return contact_rows(now.system, conditions, moment.state, moment.time, ambient, pressing)
+
     def _force_per_pressure(self, conditions: InterfaceConditions) -> np.ndarray:
         """Normal force per pressure at the points (n,) [m²]; those of the last conditions kept."""
         if self._pressing is None or self._pressing[0] is not conditions:
-            system = self.loop.now.system
-            directions = system.with_friction(conditions.friction).traction_direction
-            along = directions @ system.load_direction
-            self._pressing = conditions, system.weights * along
+            system = self.loop.now.system.with_friction(conditions.friction)
+            self._pressing = conditions, system.force_per_pressure
         return self._pressing[1]
 
     def _mean(self, values: np.ndarray) -> float:

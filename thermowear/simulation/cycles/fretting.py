@@ -59,7 +59,8 @@ class FrettingPath:
             raise CaseError("load.history: missing; required in a fretting analysis")
         self._holder, self._settings = system.model.holder, settings
         self._path = LoadPath(history, settings.output_times)
-        self._friction, self._laws = system.friction, tuple(system.laws.values())
+        self._friction = system.model.interface.nominal_friction
+        self._laws = tuple(system.laws.values())
         self.cycle_of_history = history.cycle
         across = [_ACROSS] if history.tangential else []
         self.translations = np.array([system.model.holder.load_direction, *across])
@@ -187,7 +188,7 @@ class FrettingHistory(AnalysisHistory[Increment]):
         moved = translation(end.motion @ self._path.translations)
         rates = self._per_cycle / self._duration
         contact = contact_state(system, pressure, shear)
-        found = snapshot(system, contact, moved, self._depths(end), rates)
+        found = snapshot(system, contact, (moved,), self._depths(end), rates)
         gap = found.interface.gap + system.basis @ self._slid_along(end)
         interface = replace(found.interface, gap=gap)
         return replace(found, interface=interface, friction=self._friction(end))
@@ -269,12 +270,12 @@ class FrettingHistory(AnalysisHistory[Increment]):
     def _friction(self, state: StickSlipState) -> FrictionInterface:
         """Stick and slip at the contact points in a state."""
         system = self._system
-        points, pressure = system.pairing.on_body_1, system.basis @ state.pressure
+        points, pressure = system.contacts.on_body_1, system.basis @ state.pressure
         status = np.where(pressure > 0, np.where(self._sticking(state), 1, 2), 0)
         return FrictionInterface(
             x=points[:, 0],
             y=points[:, 1],
-            s=system.pairing.position,
+            s=system.contacts.position,
             weight=system.weights,
             pressure=pressure,
             shear=system.basis @ state.shear[:, 0],

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...laws.motions import combined
 from ...model.analyses import ReciprocatingAnalysis
 from ...results import HistoryRow, WornTrack
 from ..interface.body_state import contact_state
@@ -60,9 +59,8 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
             self._at_points(v) for v in (state.worn, self._problem.rates(state.pressure))
         )
         solution = interface_problem(system).worn(worn.sum(axis=0))
-        motion = combined(system.holder.motions, solution.motion)
         contact = contact_state(system, solution.pressure)
-        found = snapshot(system, contact, motion, worn, rates)
+        found = snapshot(system, contact, system.motions(solution.motion), worn, rates)
         return replace(found, track=self._worn_track(state))
 
     def _worn_track(self, state: InterfaceState) -> WornTrack:

@@ -60,10 +60,12 @@ class ReciprocatingProblem(WearProblem):
         self._systems = [position.system for position in stroke]
         self._holder = system.holder
         speeds = np.array([[position.speed] for position in stroke])
-        self._local = _LocalWear(tuple(system.laws.values()), speeds, system.friction)
+        self._local = _LocalWear(
+            tuple(system.laws.values()), speeds, system.model.interface.nominal_friction
+        )
         pairings = [there.pairing for there in self._systems]
         lengths = [position.length for position in stroke]
-        self._length = float(system.pairing.position[-1])
+        self._length = float(system.contacts.position[-1])
         # resolution is limited by the parts of the stroke and by the pressure basis
         spacing = max(float(np.mean(lengths)), self._length / system.basis.shape[1])
         self.track = track(pairings, lengths, spacing, system.model.thickness or 1.0)
@@ -71,7 +73,7 @@ class ReciprocatingProblem(WearProblem):
         self._shares = np.array([position.share for position in stroke])
         weighted = system.contact.weighted
         self.areas = weighted.sum(axis=0), self.track.areas
-        self._places = (system.pairing.position @ weighted) / self.areas[0], self.track.position
+        self._places = (system.contacts.position @ weighted) / self.areas[0], self.track.position
         self._spread = stroke_distribution(self._contacts, self.track, self._shares)[
             list(system.laws)
         ]

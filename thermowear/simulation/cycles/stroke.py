@@ -9,6 +9,7 @@ import numpy as np
 
 from ...contact.operators.rigid_motion import hold, sliding
 from ...contact.operators.traces import gap_trace
+from ...contact.search.contacts import Contacts
 from ...contact.solvers.coupled_positions import CoupledContacts
 from ...contact.wear.track import StrokeGrid
 from ...errors import CaseError
@@ -80,7 +81,8 @@ def moved(system: System, offset: float, direction: int) -> System:
     face_1, face_2 = (side.face for side in system.pairing.sides)
     face_1 = replace(face_1, nodes=face_1.nodes + np.array([offset, 0.0]))
     with system.phases("pair"):
-        pairing, basis = contact_points(model, system.comm, kinematics, face_1, face_2)
+        given = model, model.interface, system.comm, kinematics
+        pairing, basis = contact_points(*given, face_1, face_2)
     if pairing.unpaired > system.pairing.unpaired + _UNPAIRED:
         raise CaseError(
             f"motion.amplitude: {pairing.unpaired:.2%} of {model.interface.faces[0]} leaves "
@@ -89,19 +91,20 @@ def moved(system: System, offset: float, direction: int) -> System:
         )
     velocity = direction * kinematics.sliding(pairing.points, model.motion)
     slides = sliding(velocity, pairing.normals, model.holder.load_direction)
-    friction = system.friction, model.interface.transverse_friction
+    friction = model.interface.nominal_friction, model.interface.transverse_friction
     traction_direction = slides.traction_direction(pairing.normals, *friction)
     on_1, on_2 = pairing.sides
     in_place = replace(pairing, sides=(replace(on_1, face=system.pairing.sides[0].face), on_2))
+    still = Contacts((in_place,))
     return replace(
         system,
-        pairing=pairing,
-        trace=gap_trace(system.elastic.spaces, pairing),
+        contacts=Contacts((pairing,)),
+        trace=gap_trace(system.elastic.spaces, Contacts((pairing,))),
         basis=basis,
         holder=hold(
-            in_place,
+            still,
             traction_direction,
-            rigid_modes(model.holder, in_place, lambda motion: system.dead_resultant(motion)[0]),
+            rigid_modes(model.holders, still, system.dead_resultant),
         ),
         slides=slides,
         traction_direction=traction_direction,
@@ -118,7 +121,7 @@ def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
     for position, system, contact in zip(stroke, systems, contacts, strict=True):
         mean = contact.mass
         passed = contact.weighted.T @ grid.hats(system.pairing, position.length)
-        compliances.append(contact.compliance + system.softness * mean)
+        compliances.append(contact.compliance + system.model.interface.compliance * mean)
         gaps.append(contact.weak(system.gap - system.holder.imposed))
         gaps_per_depth.append(np.hstack([mean, passed]))
     return CoupledContacts(

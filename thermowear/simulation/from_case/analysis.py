@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
+from ...case import AnyCase
+from ...case.assembly.schema import AssemblyCase
 from ...case.tables import analyses as tables
-from ...case.tables.schema import Case
 from ...errors import CaseError
 from ...model.analyses import (
     Analysis,
@@ -14,15 +15,22 @@ from ...model.analyses import (
     StaticAnalysis,
     TransientAnalysis,
 )
+from ...model.model import Model
 from ...results import Result
 from ...timer import Phases
 from ..analyses import run as analyses
 from ..runtime.observer import Observer, Saved
-from .model import attributes, model_of
+from .assembly import assembly_of
+from .model import attributes, pair_of
+
+
+def model_of(case: AnyCase) -> Model:
+    """Model of a validated case."""
+    return assembly_of(case) if isinstance(case, AssemblyCase) else pair_of(case)
 
 
 def run(
-    case: Case,
+    case: AnyCase,
     comm=None,
     observer: Observer | None = None,
     phases: Phases | None = None,
@@ -32,7 +40,7 @@ def run(
     return analyses.run(model_of(case), analysis_of(case), comm, observer, phases, saved)
 
 
-def analysis_of(case: Case) -> Analysis:
+def analysis_of(case: AnyCase) -> Analysis:
     """Settings of the analysis of a case."""
     given, kept = case.analysis, {"largest_kept": case.wear.largest_kept}
     longest = case.wear.max_jump or math.inf
@@ -44,7 +52,7 @@ def analysis_of(case: Case) -> Analysis:
         return FrettingAnalysis(**found, max_jump=longest)
     if not isinstance(given, tables.Reciprocating):
         return StaticAnalysis(given.type)
-    motion = case.motion
+    motion = None if isinstance(case, AssemblyCase) else case.motion
     if motion is None or motion.amplitude is None or motion.frequency is None:
         raise CaseError("motion: missing; a reciprocating analysis needs amplitude and frequency")
     found = attributes(ReciprocatingAnalysis, given) | kept

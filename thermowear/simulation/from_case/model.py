@@ -11,6 +11,7 @@ import numpy as np
 from ...case.tables.analyses import Fretting
 from ...case.tables.geometry import Geometry, Pressing
 from ...case.tables.laws import PressureConductanceTable, TabulatedConductanceTable, law_of
+from ...case.tables.materials import Properties
 from ...case.tables.schema import Case, MeshTable
 from ...case.tables.tabulated import (
     ExpansionTable,
@@ -18,24 +19,24 @@ from ...case.tables.tabulated import (
     TemperatureHistory,
     TemperatureTable,
 )
-from ...case.tables.wear import BodyWearTable, RateTable
+from ...case.tables.wear import BodyWearTable
 from ...case.values.section import Section
 from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh
 from ...laws.coefficients import Multipliers
-from ...laws.distribution import IN_PLACE, Distribution, InPlace
+from ...laws.distribution import Distribution, InPlace
 from ...laws.interfaces import Law
-from ...laws.power_wear import PowerWear
 from ...model.body import Body, Material
 from ...model.conditions import Heat, Holder, Motion
-from ...model.face_wear import CompositeWear, FaceWear, Wear
+from ...model.face_wear import Wear
 from ...model.interface import ContactMethod, HardnessConductance, Interface
 from ...model.model import Discretisation, Model, Zone
 from ...model.tracks import CircularTrack, EvenTrack, PinTrack, TabulatedTrack, Track
+from .wear import body_wear
 
 
-def model_of(case: Case) -> Model:
-    """Model of a validated case."""
+def pair_of(case: Case) -> Model:
+    """Model of a validated case of two bodies."""
     geometry = case.geometry
     return Model(
         kinematics=case.model,
@@ -44,7 +45,6 @@ def model_of(case: Case) -> Model:
         holders=(_holder(case),),
         meshes=CaseMeshes(case.model, geometry, case.mesh, case),
         discretisation=Discretisation(case.mesh.degree, case.contact.positioning, case.mesh.solver),
-        motion=_motion(case),
         heat=None if case.heat is None else Heat(**attributes(Heat, case.heat)),
         thickness=geometry.thickness_factor,
         sector=geometry.sector,
@@ -106,7 +106,11 @@ def _bodies(case: Case) -> tuple[Body, Body]:
 
 def _material(case: Case, part: str) -> Material:
     """Material of a part, with ``like`` resolved; a zone may share the material of its body."""
-    path, given = case.located_material(part)
+    return material(*case.located_material(part))
+
+
+def material(path: str, given: Properties) -> Material:
+    """Material from the table at a path."""
     if given.young_modulus is None or given.poisson_ratio is None:
         raise CaseError(f"{path}: needs young_modulus and poisson_ratio")
     return Material(**attributes(Material, given), label=path)
@@ -176,6 +180,7 @@ def _interface(case: Case) -> Interface:
     history = contact.friction_history
     return Interface(
         faces=case.geometry.contact,
+        motion=_motion(case),
         friction=contact.friction_law,
         friction_factors=contact.friction_factor.multipliers,
         friction_history=None if history is None else history.function,
@@ -186,6 +191,7 @@ def _interface(case: Case) -> Interface:
         wear=_wear(case),
         closes_by_wear=not isinstance(case.analysis, Fretting),
         compliance=contact.compliance or 0.0,
+        fluid_pressure=contact.fluid_pressure,
         initial_shape=case.geometry.initial_shape,
         pressure_degree=contact.pressure_degree,
         method=ContactMethod(
@@ -199,43 +205,27 @@ def _interface(case: Case) -> Interface:
 
 def _conductance(case: Case) -> Law | HardnessConductance | None:
     """Contact conductance of a case; None: perfect contact, or no heat."""
-    given = None if case.heat is None else case.heat.conductance
+    return None if case.heat is None else conductance(case.heat.conductance, "heat.conductance")
+
+
+def conductance(given: Any, path: str) -> Law | HardnessConductance | None:
+    """Contact conductance from the value of the key at a path; None: perfect contact."""
     if isinstance(given, TabulatedConductanceTable):
         return Multipliers({"p": given.table})
     if isinstance(given, PressureConductanceTable):
         return HardnessConductance(given.coefficient)
-    return None if given is None else law_of(given, "heat.conductance", 0.0)
+    return None if given is None else law_of(given, path, 0.0)
 
 
 def _wear(case: Case) -> dict[int, Wear]:
     """Wear of the faces by index; bodies without a wear table do not wear."""
     return {
-        index: _body_wear(case, name, case.wear[name])
+        index: body_wear(
+            case.geometry, name, case.wear[name], case.contact, _track(case, case.wear[name])
+        )
         for index, name in enumerate(case.geometry.bodies)
         if name in case.wear
     }
-
-
-def _body_wear(case: Case, name: str, wear: BodyWearTable) -> Wear:
-    """Wear of a body by one law, or by those of its parts; the others have the body's own."""
-    if not wear.materials:
-        return _face_wear(case, wear, _track(case, wear))
-    parts = case.geometry.parts_of(name)
-    found = dict.fromkeys(parts, _face_wear(case, wear)) if wear.has_law else {}
-    own = {case.part_named(name, key): law for key, law in wear.materials.items()}
-    found |= {part: _face_wear(case, law) for part, law in own.items() if part is not None}
-    return CompositeWear(found)
-
-
-def _face_wear(case: Case, wear: RateTable, track: Distribution | Track = IN_PLACE) -> FaceWear:
-    factors = wear.factor.multipliers
-    if wear.law is not None:
-        return FaceWear(wear.law, factors, track=track)
-    κ, b, a = wear.coefficient_si(), wear.pressure_exponent, wear.velocity_exponent
-    if wear.per == "pressure":
-        return FaceWear(PowerWear(κ, b, a), factors, track=track, per=wear.per)
-    law = PowerWear.per_friction_stress(κ, case.contact.nominal_friction, b, a)
-    return FaceWear(law, factors, b, track, wear.per)
 
 
 def _track(case: Case, wear: BodyWearTable) -> Distribution | Track:

@@ -202,10 +202,21 @@ def smoothed_wear(problem: InterfaceProblem, state: InterfaceState, time: float)
     weak = state.pressure > 0
     if state.pointwise is not None:
         weak &= ~state.pointwise  # there faces conform already, and the gap is resolved
-    excess = unresolved_gap(gap, weak, system.pairing, system.basis)
+    excess = unresolved_gap(gap, weak, system.contacts, system.basis)
     in_place = np.array([isinstance(s, InPlace) for s in system.spreads.values()])
     ours = np.where(in_place[:, None], state.worn, 0.0)
     whole = ours.sum(axis=0)
     shares = np.divide(ours, whole, out=np.zeros_like(ours), where=whole > 0.0)
     found = state.worn - shares * excess
     return found if np.all(found >= 0.0) else state.worn
+
+
+def thickness_behind(system: System, pairing: Pairing, index: int) -> float:
+    """Thickness of a body behind the middle of a contact face [m]; every rank calls."""
+    bodies = system.bodies
+    out = (pairing.weights @ pairing.normals) * (1 if index == 0 else -1)
+    out = out / np.linalg.norm(out)
+    middle = np.average(pairing.points, axis=0, weights=pairing.weights)
+    mesh = bodies.each[pairing.sides[index].face.body].mesh
+    nodes = mesh.geometry.x[:, : len(middle)]
+    return max(system.comm.allgather(float(((middle - nodes) @ out).max(initial=0.0))))

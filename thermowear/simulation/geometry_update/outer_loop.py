@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...contact.search.pairing import Pairing
 from ...contact.wear.worn_face import curvatures
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
@@ -25,7 +26,7 @@ from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import updated
-from .moving_faces import STEPPED, MovingFaces, smoothed_wear, steps_grow
+from .moving_faces import STEPPED, MovingFaces, smoothed_wear, steps_grow, thickness_behind
 from .wider_zone import UpdateCounts, meshed_wider, wider_zone
 
 _CHANGE = 5e-3
@@ -43,8 +44,7 @@ Principle = Callable[[System], SteadyState | None]
 class GapWear:
     """Wear kept in the gap of a system, relative to the dimensions of the bodies.
 
-    Dimensions are the thickness behind the face and the radius of curvature of either face; a tenth
-    of the element tilt (depth difference of its ends over its size) counts, too.
+    Thickness behind a face, and radii of curvature; a tenth of the tilt of elements counts, too.
 
     Attributes
     ----------
@@ -53,19 +53,31 @@ class GapWear:
     """
 
     def __init__(self, system: System):
-        self._system, side = system, system.pairing.sides[0]
-        facets, self._first = np.unique(side.facet, return_index=True)
-        self._lengths = side.face.lengths[facets]
-        self._curvature = max(float(curvatures(s.face).max()) for s in system.pairing.sides)
+        self._system = system
         self.faces = MovingFaces(system)
-        self._thickness = {index: _thickness(system, index) for index in self.faces.bodies}
+        sides = self.faces.bodies
+        self._each = [(_FaceSize(system, each, sides), own) for each, own in system.contacts]
 
     def depth(self, state: InterfaceState) -> np.ndarray:
         """Depths kept in the gap in a state, shape (2, n) [m]."""
         return state.by_body(self._system.laws) - self._system.moved
 
     def fraction(self, depth: np.ndarray) -> float:
-        """Largest ratio of a depth (2, n) of both bodies to their dimensions."""
+        """Largest ratio of depths (2, n) of both faces to the dimensions of their bodies."""
+        return max(size.fraction(depth[:, points]) for size, points in self._each)
+
+
+class _FaceSize:
+    """Dimensions of the bodies at an interface that limit the wear kept in its gap."""
+
+    def __init__(self, system: System, pairing: Pairing, sides: list[int]):
+        side = pairing.sides[0]
+        facets, self._first = np.unique(side.facet, return_index=True)
+        self._lengths = side.face.lengths[facets]
+        self._curvature = max(float(curvatures(s.face).max()) for s in pairing.sides)
+        self._thickness = {side: thickness_behind(system, pairing, side) for side in sides}
+
+    def fraction(self, depth: np.ndarray) -> float:
         ratios = [0.0]
         for index, thickness in self._thickness.items():
             largest = float(np.abs(depth[index]).max())
@@ -142,11 +154,12 @@ class OuterLoop:
         self._observer = observer
         self._narrow = ""
         self.now = self._period(problem)
-        if np.isfinite(self.allowed) and self.now.gap_wear is None:
+        if np.isfinite(self.allowed) and problem.system.model.is_pair and not self.now.gap_wear:
             observer.note(STEPPED)
 
     def _period(self, problem: InterfaceProblem) -> MeshPeriod:
-        follows = np.isfinite(self.allowed) and not steps_grow(problem.system)
+        movable = problem.system.model.is_pair and not steps_grow(problem.system)
+        follows = np.isfinite(self.allowed) and movable
         kept = GapWear(problem.system) if follows else None
         return MeshPeriod(problem, self._principle(problem.system), kept)
 
@@ -284,14 +297,3 @@ class OuterLoop:
             wished = self.allowed * float(np.clip(_CHANGE / change, 0.2, 2.0))
             self.allowed = float(np.clip(wished, 0.01 * automatic, _ROOM * automatic))
         return self._period(problem), replace(last, state=state)
-
-
-def _thickness(system: System, index: int) -> float:
-    """Thickness of a body behind the middle of its contact face [m]; every rank calls."""
-    pairing, bodies = system.pairing, system.bodies
-    out = (pairing.weights @ pairing.normals) * (1 if index == 0 else -1)
-    out = out / np.linalg.norm(out)
-    middle = np.average(pairing.points, axis=0, weights=pairing.weights)
-    mesh = bodies.each[pairing.sides[index].face.body].mesh
-    nodes = mesh.geometry.x[:, : len(middle)]
-    return max(system.comm.allgather(float(((middle - nodes) @ out).max(initial=0.0))))

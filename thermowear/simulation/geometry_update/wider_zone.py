@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import scipy
 
-from ...contact.search.face import Surface
 from ...errors import CaseError
 from ...laws.distribution import InPlace
 from ...model.model import Zone
@@ -37,7 +36,7 @@ _COMBINED: dict[str, Callable[[Any, Any], Any]] = {
 
 def ends_outside_zone(system: System) -> tuple[bool, bool]:
     """Test whether the first and the last end of the face lie outside the expected zone."""
-    zone, x = system.model.expected_zone, system.pairing.points[:, 0]
+    zone, x = system.model.expected_zone, system.contacts.points[:, 0]
     if zone is None:
         return False, False
     margin = 1e-6 * (zone[1] - zone[0])
@@ -46,7 +45,7 @@ def ends_outside_zone(system: System) -> tuple[bool, bool]:
 
 
 def _is_surface(system: System) -> bool:
-    return isinstance(system.pairing.sides[0].face, Surface)
+    return system.contacts.in_space
 
 
 def reaches_open_end(system: System, pressure: np.ndarray) -> bool:
@@ -54,7 +53,7 @@ def reaches_open_end(system: System, pressure: np.ndarray) -> bool:
     zone = system.model.expected_zone
     if zone is not None and _is_surface(system):
         middle = (zone[0] + zone[1]) / 2, 0.0
-        away = np.linalg.norm(system.pairing.points[:, :2] - middle, axis=1)
+        away = np.linalg.norm(system.contacts.points[:, :2] - middle, axis=1)
         return bool(np.any(pressure[away > _RIM * away.max()] > 0))
     ends = zip(ends_outside_zone(system), (0, -1), strict=True)
     return any(outside and pressure[end] > 0 for outside, end in ends)

@@ -158,14 +158,16 @@ class FrictionHeat:
         Infinite without any heat source at the start, friction [W/m²] or other.
         """
         system, thermal = self._system, self._thermal
+        extent = min(pairing.extent for pairing in system.contacts.each)
+        through = (_FIRST_DEPTH * extent) ** 2 / thermal.diffusivity
         if self.steps.driven:
-            return (_FIRST_DEPTH * system.pairing.extent) ** 2 / thermal.diffusivity
+            return through
         if friction_heat == 0.0:
             return np.inf
-        share = thermal.face.partition
-        first, second = system.facing.effusivities(system.model.materials)
+        share, materials = thermal.face.partition, system.model.materials
+        each = [facing.effusivities(materials) for facing in system.facing]
+        first, second = (np.concatenate(side) for side in zip(*each, strict=True))
         steepest = float(np.maximum(share / first, (1 - share) / second).max()) * friction_heat
-        through = (_FIRST_DEPTH * system.pairing.extent) ** 2 / thermal.diffusivity
         return float(max(through, np.pi * (_FIRST_RISE / (2 * steepest)) ** 2))
 
 

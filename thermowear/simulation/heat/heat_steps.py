@@ -10,22 +10,19 @@ from typing import Any
 import numpy as np
 
 from ...bulk.heat.conduction import Conduction
+from ...contact.operators import heat_exchange
 from ...contact.operators.condensation import condense_heat
 from ...contact.operators.coupled_heat import AnyFace
 from ...contact.operators.heat import BaselineResponse, ThermalState
-from ...contact.operators.heat_exchange import (
-    CoupledDistortion,
-    InterfaceHeat,
-    baseline_response,
-    opened_by,
-)
+from ...contact.operators.heat_exchange import CoupledDistortion, InterfaceHeat
 from ...contact.operators.pressure import scaled
 from ...contact.operators.thermal_opening import ThermalDistortion
 from ...parallel import sum_over_ranks
 from ...serialise import serialisable
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from ..system.thermal_system import ThermalLoad, ThermalSystem
+from ..system.thermal_loads import ThermalLoad
+from ..system.thermal_system import ThermalSystem
 from .exchange_cache import ExchangeCache, KnownExchange, thermal_distortion
 
 _ROUNDING = 1e-3
@@ -107,7 +104,7 @@ class HeatOperators:
 
     def __init__(self, system: System, conduction: Conduction, face: AnyFace):
         self.conduction, self.face, self._system = conduction, face, system
-        method, condensed = system.model.interface.method.name, isinstance(face, InterfaceHeat)
+        method, condensed = system.model.method, isinstance(face, InterfaceHeat)
         self.distorts = method == "condensed" and condensed
         self._last: tuple[bytes, KnownExchange] | None = None
 
@@ -131,13 +128,13 @@ class HeatOperators:
     def baseline(self, rise: np.ndarray) -> BaselineResponse:
         """Interface response to a nodal rise (n_owned,); every rank calls."""
         opening = self.opened([rise]) if self.distorts else None
-        return baseline_response(rise, self.face.traces, self._system.comm, opening)
+        return heat_exchange.baseline_response(rise, self.face.traces, self._system.comm, opening)
 
     def opened(self, rises: list[np.ndarray]) -> np.ndarray:
         """Weak gap opened by nodal rises, see `ThermalOpening.of`; every rank calls."""
         opening = self._system.thermal_opening
         if opening.per_rise:
-            return opened_by(opening.per_rise, rises, self._system.comm)
+            return heat_exchange.opened_by(opening.per_rise, rises, self._system.comm)
         return opening.of(rises)
 
     def known(self, conductance: np.ndarray) -> KnownExchange:

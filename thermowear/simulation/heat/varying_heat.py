@@ -20,7 +20,8 @@ from ...contact.operators.heat_exchange import baseline_response
 from ...errors import ComputationError
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from ..system.thermal_system import ThermalLoad, ThermalSystem
+from ..system.thermal_loads import ThermalLoad
+from ..system.thermal_system import ThermalSystem
 from .heat_steps import AnyFace, HeatOperators, HeatStep, HeatSteps
 
 _ITERATIONS = 60

@@ -11,8 +11,7 @@ from ...compat import coordinate_element
 from ...contact.operators.rigid_motion import RigidMode
 from ...contact.operators.tangential import tangents
 from ...contact.operators.traces import vector_trace
-from ...contact.search.pairing import PairedFace
-from ...laws.motions import translation
+from ...laws.motions import RigidMotion, translation
 from ...parallel import sum_over_ranks
 from ..heat.friction_heat import TemperatureField, friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
@@ -46,7 +45,7 @@ class ContactState:
         traction = self.pressure[:, None] * system.traction_direction
         if self.shear is None:
             return traction
-        return traction - self.shear[:, None] * tangents(system.pairing.normals)[0]
+        return traction - self.shear[:, None] * tangents(system.contacts.normals)[0]
 
 
 def contact_state(
@@ -61,7 +60,7 @@ def contact_state(
 
 @dataclass(frozen=True)
 class BodyState:
-    """Fields of both bodies and their effect on the interface.
+    """Fields of the bodies and their effect on the interfaces.
 
     Attributes
     ----------
@@ -97,8 +96,8 @@ def body_state(system: System, contact: ContactState) -> BodyState:
     hottest, strained = float("nan"), np.zeros(len(system.elastic.fixed))
     loads = system.traction @ (system.weights * pressure)
     if shear is not None:
-        pairing = system.pairing
-        along = vector_trace(system.elastic.spaces, pairing, -tangents(pairing.normals)[0])
+        contacts = system.contacts
+        along = vector_trace(system.elastic.spaces, contacts, -tangents(contacts.normals)[0])
         loads = loads + along @ (system.weights * shear)
     if system.dead_load is not None:
         loads = loads + system.dead_load
@@ -116,73 +115,74 @@ def body_state(system: System, contact: ContactState) -> BodyState:
 
 
 def _force_error(system: System, contact: ContactState, displacement, loads, strained) -> float:
-    """Relative error between support reactions and the forces of holder and contact.
+    """Relative error between support reactions and the forces of holders and contacts.
 
-    Along each rigid mode the reaction on body 1 must equal the load of the holder, or the contact
-    force where the motion is given, and the support of body 2 must balance the contact; across
-    them the guides do. Moments of the contact act on each body at its own points. Relative to the
-    sum of the magnitudes, for translations of all forces. Where no force acts, as on hot bodies
-    apart, reactions are the rounding of the thermal forces ``strained`` (n_owned,), without their
-    part that grows beyond bounds towards ν = 0.5.
+    On each body supports and joints must balance the contact along each rigid mode, and across
+    them the guides do; those on the bodies of a holder must equal its load along its free motions.
+    Moments of the contact act on each body at its own points. Relative to the sum of the
+    magnitudes, for translations of all forces. Where no force acts, as on hot bodies apart,
+    reactions are the rounding of the thermal forces ``strained`` (n_owned,), without their part
+    that grows beyond bounds towards ν = 0.5.
     """
-    rigid_modes = [*_with_rotations(system), *_across(system)]
+    rigid_modes = [*_with_rotations(system, contact), *((m, None) for m in _across(system))]
     nodes = system.elastic.nodes()
-    reactions = system.elastic.reactions(displacement, loads).reshape(nodes.shape)
-    upper = system.elastic.owned_by(*system.model.bodies[0].parts)
-    carried, carried_by_2 = (
-        _work(system, contact, rigid_modes, side) for side in system.pairing.sides
-    )
+    reactions = system.elastic.reactions(displacement, loads)
+    reactions = (reactions + system.elastic.joint_forces(displacement, loads)).reshape(nodes.shape)
+    owned = [system.elastic.owned_by(*body.parts) for body in system.model.bodies]
     errors, scales = np.zeros(len(rigid_modes)), np.zeros(len(rigid_modes))
     strained = system.elastic.compressibility() * strained.reshape(nodes.shape)
-    pressed = _part(contact.conditions.load - system.holder.dead, system.holder.load)
-    for k, (mode, share, other) in enumerate(zip(rigid_modes, carried, carried_by_2, strict=True)):
+    for k, (mode, load) in enumerate(rigid_modes):
         moved = mode.motion.at(nodes)
         work = (reactions * moved).sum(axis=1)
         magnitudes = np.abs(work).sum(), np.abs(strained * moved).sum()
-        parts = np.array([work[upper].sum(), work[~upper].sum(), *magnitudes])
-        held, supported, borne, thermal = sum_over_ranks(system.comm, parts)
+        parts = np.array([*(work[own].sum() for own in owned), *magnitudes])
+        *held, borne, thermal = sum_over_ranks(system.comm, parts)
         given = system.dead_resultant(mode.motion)
-        found = share.sum()
-        # the load may be below the maximum of its history
-        expected = (
-            found - given[0]
-            if mode.load is None or contact.shear is not None
-            else pressed * mode.load
-        )
-        errors[k] = np.maximum(abs(held - expected), abs(supported + given[1] + other.sum()))
-        loaded = np.abs(share).sum() + np.abs(given).sum()
-        scales[k] = max(loaded, borne, _ROUNDING / ALLOWED * thermal)
-    shifts = np.array([not mode.motion.rotation.any() for mode in rigid_modes])
+        found, carried = _borne_by_bodies(system, contact, mode.motion)
+        errors[k] = np.abs(np.array(held) - (found - given)).max()
+        if load is not None:
+            errors[k] = max(errors[k], abs(sum(held[body] for body in mode.bodies) - load))
+        scales[k] = max(carried + np.abs(given).sum(), borne, _ROUNDING / ALLOWED * thermal)
+    shifts = np.array([not mode.motion.rotation.any() for mode, _ in rigid_modes])
     scales[shifts] = scales[shifts].max()
     return max(relative(e, s) for e, s in zip(errors, scales, strict=True))
 
 
-def _with_rotations(system: System) -> list[RigidMode]:
-    """Rigid modes of the holder that the elements represent without strain.
+def _with_rotations(system: System, contact: ContactState) -> list[tuple[RigidMode, float | None]]:
+    """Rigid modes of the holders that the elements represent without strain, with their loads.
 
-    Rotations are linear in the coordinates: in cells with a geometry of higher degree than the
-    displacement they cause small strains, and moments balance only within the discretisation error.
+    Loads are the present ones; None for given motions, and where friction sticks. Rotations are
+    linear in the coordinates: in cells with a geometry of higher degree than the displacement they
+    cause small strains, and moments balance only within the discretisation error.
     """
     degree = system.model.discretisation.degree
     curved = any(coordinate_element(body.mesh).degree > degree for body in system.bodies.each)
-    return [d for d in system.holder.rigid_modes if not (curved and d.motion.rotation.any())]
+    present = iter(contact.conditions.load - system.holder.dead)
+    loads = [None if mode.load is None else next(present) for mode in system.holder.rigid_modes]
+    return [
+        (mode, load if contact.shear is None else None)
+        for mode, load in zip(system.holder.rigid_modes, loads, strict=True)
+        if not (curved and mode.motion.rotation.any())
+    ]
 
 
-def _work(system: System, contact: ContactState, rigid_modes, side: PairedFace) -> np.ndarray:
-    """Work of the contact traction on motions of a body at the points of its face, (k, n)."""
-    points = side.face.points(side.facet, side.t)
-    moved = np.array([mode.motion.at(points) for mode in rigid_modes])
-    return system.weights * np.einsum("kni,ni->kn", moved, contact.traction(system))
+def _borne_by_bodies(
+    system: System, contact: ContactState, motion: RigidMotion
+) -> tuple[np.ndarray, float]:
+    """Work of a motion of each body against the contact, (n_bodies,), and sum of magnitudes."""
+    contacts, traction = system.contacts, contact.traction(system)
+    result, magnitude = np.zeros(len(system.model.bodies)), 0.0
+    for body in range(len(result)):
+        for side, points in contacts.of_body(body):
+            at = (contacts.on_body_1, contacts.on_body_2)[side][points]
+            work = contacts.weights[points] * np.einsum("ni,ni->n", motion.at(at), traction[points])
+            result[body] += (1.0, -1.0)[side] * work.sum()
+            magnitude += np.abs(work).sum() / 2
+    return result, magnitude
 
 
 def _across(system: System) -> list[RigidMode]:
     """Translations along the axes without a load, balanced independently of the holder."""
-    gdim = system.pairing.points.shape[1]
-    axes = [system.load_direction] if system.model.kinematics == "axisymmetric" else np.eye(gdim)
+    gdim = system.contacts.points.shape[1]
+    axes = [(0.0, 1.0)] if system.model.kinematics == "axisymmetric" else np.eye(gdim)
     return [RigidMode(translation(axis), amplitude=0.0) for axis in axes]
-
-
-def _part(load: np.ndarray, largest: np.ndarray) -> float:
-    """Fraction of the largest loads that is applied."""
-    size = float(largest @ largest)
-    return float(load @ largest) / size if size > 0 else 1.0

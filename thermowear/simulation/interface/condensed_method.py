@@ -16,6 +16,7 @@ from ...contact.solvers.signorini import (
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
 from ...errors import ComputationError
+from ..system.fluid import parted_by_fluid
 from ..system.system import System
 from .contact_solver import ContactSolution
 
@@ -64,9 +65,8 @@ class CondensedMethod:
     def __init__(self, system: System):
         self._system = system
         self._contact = system.contact
-        nominal = np.full(len(system.weights), system.friction)
-        self._last_friction = (nominal.tobytes(), self._contact)
-        self._dead = system.gap - system.pairing.gap
+        self._last_friction = (system.friction.tobytes(), self._contact)
+        self._dead = system.gap - system.contacts.gap
         self._free = system.holder.free
         self._given = system.holder.amplitudes(np.zeros(int(self._free.sum())))
         self._last_space: tuple[CondensedContact, np.ndarray, EdgeSpace] | None = None
@@ -82,7 +82,9 @@ class CondensedMethod:
             return self._balanced(gap, slope, guess, conditions, heat, pointwise)
         except NoEquilibrium as error:
             cold = _LOCKED if conditions.friction.any() else _TIPPED
-            raise ComputationError(f"{error}; {cold if heat is None else _HOT}") from None
+            text = f"{error}; {cold if heat is None else _HOT}"
+            parted = parted_by_fluid(self._system, conditions.load)
+            raise parted or ComputationError(text) from None
 
     def _balanced(
         self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise

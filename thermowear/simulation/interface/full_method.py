@@ -94,7 +94,7 @@ class FullMethod:
     def _edge_compliance(self) -> np.ndarray:
         """Compliance ε of the points at the edge of the wear, shape (n,) [m/Pa]."""
         system = self._system
-        degree = system.model.pressure_degree
+        degree = system.model.pressure_degree(system.model.interface)
         return wave_compliance(system.elastic, system.pairing, degree)
 
     def _deflection(self, points: np.ndarray | None) -> EdgeDeflection | None:

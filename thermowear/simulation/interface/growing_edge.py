@@ -1,4 +1,7 @@
-"""Edge of a growing contact in time: points with pointwise contact, error norm, step sizes.
+"""Edges that travel over the contact: points with pointwise contact, error norm, step sizes.
+
+They are the edge of a contact that grows by wear, and the border of each layer that is worn
+through; the latter wear on all the time, and need no step sizes of their own.
 
 At a distance ξ from an edge that travels at a speed c the pressure rises as ``ξ^θ``,
 ``tan πθ = 2 c / (E* k v)``: ``2 p / E*`` is the slope of the elastic deflection, ``k v p / c`` that
@@ -20,6 +23,7 @@ from ...contact.wear.implicit_step import WearRates
 from ...contact.wear.wear_edge import closing_times, edge_points, has_passed, rough_points
 from ..system.system import System
 from .contact_solver import ContactSolver
+from .interface_wear import InterfaceWear
 from .sdirk import InterfaceState
 
 _RISE = 0.1
@@ -31,12 +35,18 @@ _STEP_AFTER_CONTACT = 0.4
 
 
 class GrowingEdge:
-    """Edge of the wear in a contact that may grow by wear."""
+    """Edge of the wear in a contact that may grow by wear, and borders between layers."""
 
-    def __init__(self, system: System, method: ContactSolver):
-        self._facet, self._basis = system.pairing.sides[0].facet, system.basis
+    def __init__(self, system: System, method: ContactSolver, wear: InterfaceWear):
+        self._wear = wear
+        self._facet, self._basis = system.contacts.facet, system.basis
         self._weights = system.weights
         self._method = method
+
+    def partial_zones(self, worn: np.ndarray) -> list[np.ndarray]:
+        """Points within each edge that is on the face: worn ones, and those below each layer."""
+        zones = [np.any(worn > 0.0, axis=0), *self._wear.below_layers(worn)]
+        return [zone for zone in zones if zone.any() and not zone.all()]
 
     def points(
         self,
@@ -54,10 +64,12 @@ class GrowingEdge:
         before : ndarray of bool, shape (n,), optional
             Points used for that pressure: kept until it is smooth there.
         """
-        reached = np.any(worn > 0.0, axis=0)
-        if before is None and (reached.all() or not reached.any()):
+        zones = self.partial_zones(worn)
+        if before is None and not zones:
             return None
-        points = edge_points(self._facet, self._basis, reached)
+        points = np.zeros(worn.shape[1], dtype=bool)
+        for zone in zones:
+            points |= edge_points(self._facet, self._basis, zone)
         if before is not None:
             assert pressure is not None
             points |= before & rough_points(self._facet, self._basis, self._weights, pressure)

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
+from ...contact.wear.layered_step import LayeredStep
 from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat, friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
@@ -17,6 +18,7 @@ from .contact_solver import ContactSolution, ContactSolver
 from .fixed_point import Trial, self_consistent
 from .full_method import FullMethod
 from .growing_edge import GrowingEdge
+from .interface_wear import InterfaceWear
 from .pointwise_method import PointwiseMethod
 from .sdirk import InterfaceState, WearProblem
 from .steady import SteadyState
@@ -41,13 +43,12 @@ class InterfaceProblem(WearProblem):
         self.system, self._method, self.heat = system, method, heat
         self._condition_model = ConditionModel(system)
         self._last_conditions: tuple[bytes, InterfaceConditions] | None = None
-        self._laws, self._spreads = list(system.laws.values()), list(system.spreads.values())
-        self._edge, area = GrowingEdge(system, method), float(system.weights.sum())
-        self._gap, n = system.pairing.gap - system.holder.imposed, len(system.weights)
-        self._softness, self._rigid = np.full(n, system.softness), Slope.diagonal(np.zeros(n))
-        self._unworn = np.zeros((len(self._laws), n))
-        mean = (system.model.holder.force or area) / area
-        self._guess = ContactSolution(np.full(n, mean), np.zeros(0), None)
+        self._wear = InterfaceWear(system)
+        self._edge = GrowingEdge(system, method, self._wear)
+        self._gap, n = system.contacts.gap - system.holder.imposed, len(system.weights)
+        self._softness, self._rigid = system.softness, Slope.diagonal(np.zeros(n))
+        self._unworn = np.zeros((len(self._wear.laws), n))
+        self._guess = ContactSolution(np.full(n, system.mean_pressure), np.zeros(0), None)
         self.stores_heat = system.model.heat is not None and system.model.heat.transient
 
     def unworn(self) -> InterfaceState:
@@ -80,12 +81,7 @@ class InterfaceProblem(WearProblem):
         return self._at_temperatures(self._unworn, self.heat.initial, 0.0)
 
     def take_over(
-        self,
-        former: InterfaceProblem,
-        state: InterfaceState,
-        worn: np.ndarray,
-        rise: np.ndarray | None,
-        time: float,
+        self, former: InterfaceProblem, state: InterfaceState, worn, rise, time: float
     ) -> InterfaceState:
         """Transfer a state of the same bodies from before an update of their meshes.
 
@@ -115,13 +111,7 @@ class InterfaceProblem(WearProblem):
             found = self._at_temperatures(worn, self.heat.given(stored), time, edge)
         return replace(found, peak=state.largest, pointwise=edge)
 
-    def _at_temperatures(
-        self,
-        worn: np.ndarray,
-        heat: InitialHeat,
-        time: float,
-        pointwise: np.ndarray | None = None,
-    ) -> InterfaceState:
+    def _at_temperatures(self, worn, heat: InitialHeat, time, pointwise=None) -> InterfaceState:
         """Contact at given temperatures."""
         guess = InterfaceState(worn, self._guess, faces=heat.baseline.unheated)
         conditions = self.conditions(guess, time)
@@ -133,11 +123,11 @@ class InterfaceProblem(WearProblem):
         if not reached.any() or state.contact.warm_start is None:
             return state
         if state.pointwise is None:
-            depth = state.worn.sum(axis=0)[state.pressure > 0.0]
             # pointwise contact once the edge of the contact is that of the wear: once the wear
             # depth is steeper than the deflection, in the mean over the contact
-            uniform = reached.all() or not depth.size
-            if uniform or np.ptp(depth) <= self._method.deflection_range(state.contact):
+            steepness = state.range_of_depth(self.system.contacts.ranges)
+            uniform = reached.all() and not self._wear.layered
+            if uniform or steepness <= self._method.deflection_range(state.contact):
                 return state
         edge = self._edge.points(state.worn, state.pressure, state.pointwise)
         return replace(state, pointwise=edge)
@@ -162,8 +152,8 @@ class InterfaceProblem(WearProblem):
             nonlocal found
             found = self._solve(before.worn, conditions, heat, edge, found, step)
             faces = heat.faces(conditions, found.pressure) if heat is not None and faced else None
-            worn = before.worn + step * self._rates(conditions)(found.pressure)
-            return InterfaceState(worn, found, before.peak, faces, pointwise=edge)
+            grown = self._in_step(before.worn, conditions, step).depths(found.pressure)
+            return InterfaceState(before.worn + grown, found, before.peak, faces, pointwise=edge)
 
         if model.depends_on_state:
             closed = guess.pressure > 0
@@ -177,6 +167,13 @@ class InterfaceProblem(WearProblem):
         stored = self.heat.steps.end(before.stored, step, heat, state.faces, made)
         return replace(state, stored=stored)
 
+    def prolonged(self, before: InterfaceState, after: InterfaceState, part, step, time):
+        found = before.towards(after, part)
+        if self._wear.layered:
+            wear = self._in_step(before.worn, self.conditions(after, time), part * step)
+            found = replace(found, worn=before.worn + wear.depths(after.pressure))
+        return found
+
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
         """Interface conditions in a state at a time [s]; constant ones are kept."""
         model, closed = self._condition_model, state.pressure > 0
@@ -189,7 +186,13 @@ class InterfaceProblem(WearProblem):
 
     def _rates(self, conditions: InterfaceConditions, step: float = 1.0) -> WearRates:
         """Wear rates under given conditions, for wear in a time step [s]."""
-        return WearRates(self._laws, self._spreads, conditions.wear, conditions.states, step)
+        laws, spreads = self._wear.laws, self._wear.spreads
+        return WearRates(laws, spreads, conditions.wear, conditions.states, step)
+
+    def _in_step(self, worn: np.ndarray, conditions: InterfaceConditions, step: float):
+        """Wear in a time step [s] from given depths (n_wearing, n)."""
+        rates = self._rates(conditions, step)
+        return LayeredStep(rates, worn) if self._wear.layered else rates
 
     def _solve(
         self,
@@ -215,10 +218,10 @@ class InterfaceProblem(WearProblem):
             return self._method.solve(gap + opened, softened, last, conditions, heat, pointwise)
 
         start = None if guess is None or guess.warm_start is None else guess
-        if step == 0.0 or not self._laws:
+        if step == 0.0 or not self._wear.laws:
             return solve(self._rigid.point, self._rigid, start)
         start = start or solve(self._rigid.point, self._rigid, None)
-        return newton_with_wear(solve, self._rates(conditions, step), start)
+        return newton_with_wear(solve, self._in_step(worn, conditions, step), start)
 
     def contact_state(self, state: InterfaceState, time: float) -> ContactState:
         """Contact loads of a state on the bodies; every rank calls."""
@@ -236,12 +239,7 @@ class InterfaceProblem(WearProblem):
             return super().difference(before, one, other)
         return self._edge.difference(before, one, other)
 
-    def edge_steps(
-        self,
-        states: tuple[InterfaceState, InterfaceState, InterfaceState],
-        step: float,
-        time: float,
-    ) -> tuple[float, float]:
+    def edge_steps(self, states, step: float, time: float) -> tuple[float, float]:
         last = states[2]
         if last.pointwise is None:
             return super().edge_steps(states, step, time)
@@ -259,7 +257,7 @@ class InterfaceProblem(WearProblem):
     def first_step(self, state: InterfaceState) -> float:
         """Initial step: wear small against elastic deflection, small penetration of heat [s]."""
         conditions = self.conditions(state, 0.0)
-        fastest = float(self._rates(conditions)(state.pressure).sum(axis=0).max(initial=0.0))
+        fastest = float(self._rates(conditions).value(state.pressure).max(initial=0.0))
         step = np.inf
         if fastest > 0.0:
             step = 1e-3 * self._method.largest_deflection(state.contact) / fastest
@@ -270,12 +268,13 @@ class InterfaceProblem(WearProblem):
 
     def steady(self, steady: SteadyState) -> np.ndarray:
         """Steady pressure of the discrete interface, the limit of its running-in [Pa]."""
-        conditions = steady.contact.conditions
-        return self._method.steady(steady.wear.pressure, self._rates(conditions), conditions)
+        final = self._wear.final_rates(steady.contact.conditions)
+        return self._method.steady(steady.wear.pressure, final, steady.contact.conditions)
 
     def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
-        """Largest difference to a steady pressure, relative to its maximum; NaN without one."""
-        if steady is None:
+        """Relative difference to a steady pressure; NaN without one, or with layers left on."""
+        layered = self._wear.layered
+        if steady is None or (layered and self._wear.are_left(state.worn, steady > 0.0)):
             return float("nan")
         return float(np.abs(state.pressure - steady).max() / steady.max())
 
@@ -292,7 +291,7 @@ def interface_problem(
         Called with a warning about settings that may impair the solution.
     """
     own = {"condensed": CondensedMethod, "pointwise": PointwiseMethod}
-    method = own.get(system.model.interface.method.name)
+    method = own.get(system.model.method)
     if method is not None:
         return InterfaceProblem(system, method(system), friction_heat(system))
     with system.phases("contact operators"):

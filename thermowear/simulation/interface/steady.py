@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...laws.principle.steady import SteadyWear, steady_pressure
+from ...laws.principle.steady import NotCarried, SteadyWear, steady_pressure
 from ..heat.friction_heat import friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
+from ..system.fluid import parted_by_fluid
 from ..system.system import System
 from .body_state import ContactState
 from .fixed_point import Trial, self_consistent
@@ -36,16 +37,17 @@ class SteadyState:
 def steady_state(system: System) -> SteadyState:
     """Steady pressure, wear rates and rigid-body wear velocity of a system. Every rank calls.
 
-    State-dependent friction, wear or conductance are resolved by fixed-point iteration.
+    State-dependent friction, wear or conductance are resolved by fixed-point iteration. Faces with
+    layers have lost them: wear that goes on for ever ends in the substrate.
 
     Raises
     ------
     ComputationError
         If there is no steady state, or the fixed-point iteration does not converge.
     """
+    system = system.worn_through()
     heat = friction_heat(system)
-    area = float(system.weights.sum())
-    uniform = np.full(len(system.weights), (system.model.holder.force or area) / area)
+    uniform = np.full(len(system.weights), system.mean_pressure)
     zeros = np.zeros((len(system.laws), len(uniform)))
     start = Trial(uniform, None if heat is None else heat.steps.steady.baseline.unheated, zeros)
 
@@ -72,12 +74,15 @@ def steady_state(system: System) -> SteadyState:
 
 def principle(system: System, load: np.ndarray, **conditions) -> SteadyWear:
     """Solve the principle under a load on the holder and conditions as in `steady_pressure`."""
-    return steady_pressure(
-        weights=system.weights,
-        normal_modes=system.holder.modes,
-        force_modes=system.holder.force_modes,
-        load=load,
-        laws=list(system.laws.values()),
-        spread=list(system.spreads.values()),
-        **conditions,
-    )
+    try:
+        return steady_pressure(
+            weights=system.weights,
+            normal_modes=system.holder.modes,
+            force_modes=system.holder.force_modes,
+            load=load,
+            laws=list(system.laws.values()),
+            spread=list(system.spreads.values()),
+            **conditions,
+        )
+    except NotCarried as error:
+        raise parted_by_fluid(system, load) or error from None

@@ -15,7 +15,7 @@ from ...bulk.body_mesh import BodyMesh
 from ...bulk.heat.varying import straining_rises
 from ...compat import evaluate
 from ...contact.wear.implicit_step import WearRates
-from ...laws.motions import RigidMotion, combined
+from ...laws.motions import RigidMotion, spatial
 from ...results import (
     AnyFields,
     BodyFields,
@@ -28,8 +28,10 @@ from ...results import (
 from ..interface.body_state import BodyState, ContactState, body_state
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
+from ..system.rigid_modes import fluid_pressure
 from ..system.system import System
 from .cell_grids import GRIDS, divisions
+from .coatings import coating_left
 
 _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
 _LEAST_COSINE = 0.05
@@ -45,8 +47,8 @@ class Snapshot:
     system : System
         System in this state, whose meshes may have been moved.
     contact : ContactState
-    motion : RigidMotion
-        Rigid motion of the holder.
+    motions : tuple of RigidMotion
+        Rigid motion of each holder.
     bodies : BodyState
     interface : InterfaceFields
     friction : FrictionInterface or None
@@ -57,69 +59,75 @@ class Snapshot:
 
     system: System
     contact: ContactState
-    motion: RigidMotion
+    motions: tuple[RigidMotion, ...]
     bodies: BodyState
     interface: InterfaceFields
     friction: FrictionInterface | None = None
     track: WornTrack | None = None
 
+    @property
+    def displacement(self) -> np.ndarray:
+        """Nodal displacement with the motions of the holders, shape (n_owned,) [m]."""
+        system = self.system
+        nodes = system.elastic.nodes()
+        moved = self.bodies.displacement.reshape(nodes.shape).copy()
+        for holder, motion in zip(system.model.holders, self.motions, strict=True):
+            parts = [part for body in holder.bodies for part in system.model.bodies[body].parts]
+            own = system.elastic.owned_by(*parts)
+            moved[own] += motion.at(nodes[own])
+        return moved.ravel()
+
 
 def snapshot(
     system: System,
     contact: ContactState,
-    motion: RigidMotion,
+    motions: tuple[RigidMotion, ...],
     worn: np.ndarray,
     rates: np.ndarray | None = None,
 ) -> Snapshot:
-    """Solve the bodies and record the interface. Every rank calls.
+    """Solve the bodies and record the interfaces. Every rank calls.
 
     Parameters
     ----------
     system : System
     contact : ContactState
-    motion : RigidMotion
-        Motion of the holder.
+    motions : tuple of RigidMotion
+        Motion of each holder.
     worn : ndarray, shape (2, n)
-        Wear depth of each body [m].
+        Wear depth of the first and of the second face of the interfaces [m].
     rates : ndarray, shape (2, n), optional
         Wear rates, see `record` [m/s].
     """
     bodies = body_state(system, contact)
-    open_by = system.pairing.gap + worn.sum(axis=0)
-    moved = motion.at(system.pairing.on_body_1)
-    gap = (
-        open_by
-        + system.softness * contact.pressure
-        + bodies.opening
-        - np.einsum("ni,ni->n", system.pairing.normals, moved)
-    )
-    shape = open_by.max() - open_by
-    return record(system, contact, motion, bodies, gap, shape, worn, rates)
+    open_by = system.contacts.gap + worn.sum(axis=0)
+    gap = open_by + system.softness * contact.pressure + bodies.opening - system.closed_by(motions)
+    shape = np.concatenate([open_by[own].max() - open_by[own] for own in system.contacts.ranges])
+    return record(system, contact, motions, bodies, gap, shape, worn, rates)
 
 
 def snapshot_at(problem: InterfaceProblem, state: InterfaceState, time: float) -> Snapshot:
     """Contact and bodies in a state of an interface problem at a time [s]; every rank calls."""
     system, contact = problem.system, problem.contact_state(state, time)
-    motion = combined(system.holder.motions, state.contact.motion)
-    return snapshot(system, contact, motion, state.by_body(system.laws))
+    motions = system.motions(state.contact.motion)
+    return snapshot(system, contact, motions, state.by_body(system.laws))
 
 
 def record(
     system: System,
     contact: ContactState,
-    motion: RigidMotion,
+    motions: tuple[RigidMotion, ...],
     bodies: BodyState,
     gap: np.ndarray,
     shape: np.ndarray,
     worn: np.ndarray,
     rates: np.ndarray | None = None,
 ) -> Snapshot:
-    """Record the interface of solved bodies from arrays of shape (n,) and `worn` of shape (2, n).
+    """Record the interfaces of solved bodies from arrays of shape (n,) and `worn` of shape (2, n).
 
     Wear rates of shape (2, n) are by default those of the pressure at the sliding speed.
     """
     pressure = contact.pressure
-    points = system.pairing.on_body_1
+    points = system.contacts.on_body_1
     nothing = np.full(len(pressure), np.nan)
     rates = _local_rates(system, contact) if rates is None else rates
     temperatures: tuple[np.ndarray, np.ndarray] = (nothing, nothing)
@@ -128,11 +136,12 @@ def record(
         T1, T2 = bodies.temperatures.faces.rise
         temperatures = (T1 + system.thermal.ambient, T2 + system.thermal.ambient)
         fluxes = bodies.temperatures.faces.flux
+    left = coating_left(system, worn)
     interface = InterfaceFields(
         x=points[:, 0],
         y=points[:, 1],
         z=points[:, 2] if points.shape[1] == 3 else np.zeros(len(pressure)),
-        s=system.pairing.position,
+        s=system.contacts.position,
         weight=system.weights,
         pressure=pressure,
         gap=gap,
@@ -141,12 +150,23 @@ def record(
         wear_2=worn[1],
         wear_rate_1=rates[0],
         wear_rate_2=rates[1],
+        coating_left_1=left[0],
+        coating_left_2=left[1],
+        fluid_pressure=_fluid(system),
         temperature_1=temperatures[0],
         temperature_2=temperatures[1],
         heat_flux_1=fluxes[0],
         heat_flux_2=fluxes[1],
     )
-    return Snapshot(system, contact, motion, bodies, interface)
+    return Snapshot(system, contact, motions, bodies, interface)
+
+
+def _fluid(system: System) -> np.ndarray:
+    """Pressure of the fluid at the points, shape (n,); NaN in contacts without one [Pa]."""
+    found = fluid_pressure(system.model, system.contacts)
+    wet = [one.fluid_pressure is not None for one in system.model.interfaces]
+    inside = system.contacts.per_point(wet) > 0
+    return np.where(inside, np.nan if found is None else found, np.nan)
 
 
 def _local_rates(system: System, contact: ContactState) -> np.ndarray:
@@ -157,13 +177,15 @@ def _local_rates(system: System, contact: ContactState) -> np.ndarray:
 
 
 def profile(end: Snapshot) -> Profile:
-    """Worn shape of an interface, along its normals and along the load direction."""
+    """Worn shapes of the interfaces, along their normals and along the load direction."""
     system, interface = end.system, end.interface
-    normals = np.zeros((len(interface.s), 3))
-    normals[:, : len(system.load_direction)] = system.pairing.normals
-    along = along_load(system)
-    open_by = system.pairing.gap + interface.wear_1 + interface.wear_2
-    open_by = (interface.shape.max() - interface.shape + open_by.min()) / along
+    normals = spatial(system.contacts.normals)
+    along, shape = along_load(system), np.empty(len(interface.s))
+    open_by = system.contacts.gap + interface.wear_1 + interface.wear_2
+    for own in system.contacts.ranges:
+        height = interface.shape[own].max() - interface.shape[own] + open_by[own].min()
+        height = height / along[own]
+        shape[own] = np.nanmax(height) - height
     rate = interface.wear_rate_1 + interface.wear_rate_2
     return Profile(
         x=interface.x,
@@ -174,7 +196,7 @@ def profile(end: Snapshot) -> Profile:
         normal_y=normals[:, 1],
         normal_z=normals[:, 2],
         shape=interface.shape,
-        shape_along_press=np.nanmax(open_by) - open_by,
+        shape_along_press=shape,
         wear_rate=rate,
         wear_rate_along_press=rate / along,
     )
@@ -182,22 +204,22 @@ def profile(end: Snapshot) -> Profile:
 
 def along_load(system: System) -> np.ndarray:
     """Cosines between normals and load direction, shape (n,); NaN where the face is too steep."""
-    along = system.pairing.normals @ system.load_direction
+    along = np.einsum("ni,ni->n", system.contacts.normals, system.load_directions)
     return np.where(along > _LEAST_COSINE, along, np.nan)
 
 
 def sample(snapshot: Snapshot) -> AnyFields | None:
-    """Sample displacement (holder's motion included), temperature and von Mises stress.
+    """Sample displacement (holders' motion included), temperature and von Mises stress.
 
     Body 1 is drawn at its position of the last mesh motion to the worn face: a body shortened by
     wear stays in contact with the other one.
 
     Every rank calls; ranks other than 0 return None. Cells are in the order of the mesh file.
     """
-    system, state, motion = snapshot.system, snapshot.bodies, snapshot.motion
+    system, state = snapshot.system, snapshot.bodies
     elastic, thermal, heated = system.elastic, system.thermal, state.temperatures
     n = divisions(system.bodies, max(system.model.discretisation.degree, 2))
-    u = elastic.spaces.functions(with_holder(system, state.displacement, motion), "u")
+    u = elastic.spaces.functions(snapshot.displacement, "u")
     du = elastic.spaces.functions(state.displacement, "u")
     parts = zip(elastic.each, u, du, strict=True)
     wanted = [[shown, _von_mises(body.stress(d))] for body, shown, d in parts]
@@ -261,15 +283,6 @@ def _body_of_cells(system: System, body: BodyMesh) -> np.ndarray:
     numbers = {part: number for number, each in bodies for part in each.parts}
     of_parts = np.array([numbers[part] for part in body.names])
     return of_parts[body.parts_of_cells(np.arange(body.n_cells))]
-
-
-def with_holder(system: System, displacement: np.ndarray, motion: RigidMotion) -> np.ndarray:
-    """Add the rigid motion of the holder to the nodes of body 1."""
-    upper = system.elastic.owned_by(*system.model.bodies[0].parts)
-    nodes = system.elastic.nodes()
-    moved = displacement.reshape(nodes.shape).copy()
-    moved[upper] += motion.at(nodes[upper])
-    return moved.ravel()
 
 
 def _von_mises(σ):

@@ -2,13 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...contact.operators.pressure import contact_zones
+from ...contact.operators.rigid_motion import RigidMode, hold
+from ...contact.search.pairing import Pairing
 from ...laws.coefficients import Constant
+from ...model.conditions import Holder
+from ...model.interface import Interface
+from ...model.model import Model
 from ...results import Result
+from ..system.fluid import fluid_forces
 from ..system.rigid_modes import applied, guides
 from ..system.system import System
+from .coatings import layer_volumes
 from .recording import Snapshot, profile
 
 _GUIDES = {
@@ -32,93 +41,164 @@ _ROTATIONS = {
 def summarise(end: Snapshot, time: float) -> dict:
     """Numbers of ``summary.json`` of any analysis. Quantities that do not exist are None.
 
+    Those of the interfaces and holders of several bodies are in tables by their names.
+
     Parameters
     ----------
     end : Snapshot
     time : float
         Time at the end, or zero [s].
     """
-    system, contact, interface = end.system, end.contact, end.interface
-    model, w, heated = system.model, system.weights, end.bodies.temperatures
-    p, sliding, thermal = contact.pressure, system.slides is not None, system.thermal
-    friction = sliding * contact.conditions.friction * p  # at rest there is none
-    system = system.with_friction(contact.conditions.friction)
-    rates = interface.wear_rate_1 + interface.wear_rate_2
-    worn = interface.pressure > 0
-    depths = np.array([interface.wear_1, interface.wear_2])
-    volumes = (system.worn_areas * (depths - system.moved)).sum(axis=1) + system.lost
-    summary = {
+    system, heated, model = end.system, end.bodies.temperatures, end.system.model
+    thermal = system.thermal
+    size = {
         "model": model.kinematics,
-        "method": model.interface.method.name,
+        "method": model.method,
         "dofs_displacement": system.elastic.spaces.total,
         "dofs_temperature": 0 if thermal is None else thermal.conduction.spaces.total,
-        "contact_points": len(w),
-        "friction": system.friction if isinstance(model.interface.friction, Constant) else None,
-        "normal_force_N": system.normal_force(p),
+        "contact_points": len(system.weights),
+    }
+    state = {
+        "max_temperature_K": None if heated is None else end.bodies.hottest,
+        "heat_balance_relative_error": None if heated is None else float(heated.error),
+        "equilibrium_relative_error": end.bodies.force_error,
+        **_prescribed(end, time),
+        **_passing(end, time),
+    }
+    turned = replace(end, system=system.with_friction(end.contact.conditions.friction))
+    interfaces = [_of_interface(turned, index) for index in range(len(model.interfaces))]
+    holders = [_of_holder(turned, index) for index in range(len(model.holders))]
+    if model.is_pair:
+        return size | interfaces[0] | holders[0] | state
+    return size | {
+        **state,
+        "max_pressure_Pa": float(end.contact.pressure.max()),
+        "friction_power_W": sum(found["friction_power_W"] for found in interfaces),
+        "wear_dissipation_W": sum(found["wear_dissipation_W"] for found in interfaces),
+        "contacts": {
+            one.name: {"between": [model.bodies[k].name for k in one.bodies], **found}
+            for one, found in zip(model.interfaces, interfaces, strict=True)
+        },
+        "holders": dict(zip((h.name for h in model.holders), holders, strict=True)),
+        "bodies": {
+            body.name: _of_body(model, k, interfaces) for k, body in enumerate(model.bodies)
+        },
+    }
+
+
+def _of_interface(end: Snapshot, index: int) -> dict:
+    """Numbers of one interface of a system with its present friction."""
+    system, own = end.system, end.system.contacts.ranges[index]
+    interface, pairing = system.model.interfaces[index], system.contacts.each[index]
+    fields, at, p, w = (
+        end.interface,
+        end.contact.conditions,
+        end.contact.pressure[own],
+        pairing.weights,
+    )
+    sliding = not interface.motion.at_rest  # at rest there is no friction
+    friction = sliding * at.friction[own] * p
+    rates = (fields.wear_rate_1 + fields.wear_rate_2)[own]
+    worn = p > 0
+    depths = np.array([fields.wear_1, fields.wear_2])
+    volumes = (system.worn_areas * (depths - system.moved))[:, own].sum(axis=1) + system.lost
+    constant, fluid = isinstance(interface.friction, Constant), fluid_forces(system)
+    return {
+        "friction": interface.nominal_friction if constant else None,
+        "normal_force_N": float(system.force_per_pressure[own] @ p),
+        **({"fluid_force_N": fluid[index]} if index in fluid else {}),
         "friction_force_N": float(w @ friction),
-        "friction_torque_Nm": _torque(system, friction),
-        "guide_force_N": None,
+        "friction_torque_Nm": _torque(system.model, interface, pairing, friction),
         "max_pressure_Pa": float(p.max()),
         "mean_pressure_Pa": float(w @ p / w[worn].sum()) if worn.any() else 0.0,
         "min_pressure_Pa": float(p.min()),
         "contact_area_m2": float(w[worn].sum()),
-        "contact_zones_m": contact_zones(system.pairing, p),
-        "shape_range_m": float(np.ptp(interface.shape)),
-        "approach_m": float(end.motion.at(np.array(model.holder.pivot)) @ system.load_direction),
-        "max_temperature_K": None if heated is None else end.bodies.hottest,
-        "friction_power_W": float(w @ (contact.conditions.heating * p)),
-        **_conducted(end, time),
-        "heat_balance_relative_error": None if heated is None else float(heated.error),
-        "equilibrium_relative_error": end.bodies.force_error,
-        "rigid_wear_velocity_m_per_s": None,
+        "contact_zones_m": contact_zones(pairing, p),
+        "shape_range_m": float(np.ptp(fields.shape[own])),
+        "friction_power_W": float(w @ (at.heating[own] * p)),
+        **_conducted(end, own),
         "wear_dissipation_W": float(w @ (p * rates)),
         "wear_volume_1_m3": float(volumes[0]),
         "wear_volume_2_m3": float(volumes[1]),
+        **layer_volumes(system, index, depths, volumes),
         "wear_coefficient_per": {
             name: per
-            for index, wear in model.interface.wear.items()
-            for name, per in wear.stress_by_part(model.bodies[index].name).items()
+            for side, wear in interface.wear.items()
+            for name, per in wear.stress_by_part(
+                system.model.bodies[interface.bodies[side]].name
+            ).items()
         },
+        **_friction(interface, at.friction[own], w * p),
     }
-    about = _passing(end, time) | _guide_reactions(system, p) | _rotations(end)
-    return summary | about | _friction(end)
 
 
-def _friction(end: Snapshot) -> dict[str, float]:
-    """Range of the coefficient of friction in contact and its force-weighted mean, if varying."""
-    system, pressure = end.system, end.contact.pressure
-    if not system.model.interface.friction_varies or not pressure.any():
-        return {}
-    friction, carries = end.contact.conditions.friction, pressure > 0
+def _of_holder(end: Snapshot, index: int) -> dict:
+    """Position of a holder, and the reactions of its guides."""
+    system, holder = end.system, end.system.model.holders[index]
+    motion, direction = end.motions[index], np.array(holder.load_direction)
+    turned = zip(_ROTATIONS.items(), motion.rotation, strict=True)
     return {
-        "friction_mean": float(np.average(friction, weights=system.weights * pressure)),
+        "approach_m": float(motion.at(np.array(holder.pivot)) @ direction),
+        "guide_force_N": None,
+        "rigid_wear_velocity_m_per_s": None,
+        **_guide_reactions(system, holder, end.contact.pressure),
+        **{key: float(angle) for (name, key), angle in turned if name in holder.free},
+    }
+
+
+def _of_body(model: Model, index: int, interfaces: list[dict]) -> dict:
+    """Volume worn from a body and heat into it, at all of its interfaces."""
+    sides = [
+        (found, interface.bodies.index(index) + 1)
+        for found, interface in zip(interfaces, model.interfaces, strict=True)
+        if index in interface.bodies
+    ]
+    result = {"wear_volume_m3": sum(found[f"wear_volume_{side}_m3"] for found, side in sides)}
+    if model.heat is not None:
+        result["contact_heat_W"] = sum(found[f"contact_heat_{side}_W"] for found, side in sides)
+    return result
+
+
+def _friction(interface: Interface, friction: np.ndarray, force: np.ndarray) -> dict[str, float]:
+    """Range of the coefficient of friction in contact and its force-weighted mean, if varying."""
+    if not interface.friction_varies or not force.any():
+        return {}
+    carries = force > 0
+    return {
+        "friction_mean": float(np.average(friction, weights=force)),
         "friction_min": float(friction[carries].min()),
         "friction_max": float(friction[carries].max()),
     }
 
 
-def _conducted(end: Snapshot, time: float) -> dict[str, float]:
-    """Heat into both bodies: at the contact, and through surfaces with a given flux or power."""
-    system, thermal, heated = end.system, end.system.thermal, end.bodies.temperatures
-    if thermal is None or heated is None:
+def _conducted(end: Snapshot, own: slice) -> dict[str, float]:
+    """Heat into both bodies of an interface."""
+    heated = end.bodies.temperatures
+    if end.system.thermal is None or heated is None:
         return {}
-    into = (float(system.weights @ flux) for flux in heated.faces.flux)
-    found = {f"contact_heat_{body}_W": heat for body, heat in enumerate(into, 1)}
-    load = thermal.loads.at(time)
-    return found | ({"prescribed_heat_W": load.prescribed} if load.magnitude > 0.0 else {})
+    into = (float(end.system.weights[own] @ flux[own]) for flux in heated.faces.flux)
+    return {f"contact_heat_{side}_W": heat for side, heat in enumerate(into, 1)}
+
+
+def _prescribed(end: Snapshot, time: float) -> dict[str, float]:
+    """Heat through surfaces with a given flux or power, if there are any."""
+    thermal = end.system.thermal
+    load = None if thermal is None else thermal.loads.at(time)
+    return {} if load is None or load.magnitude == 0.0 else {"prescribed_heat_W": load.prescribed}
 
 
 def _passing(end: Snapshot, time: float) -> dict:
     """Advection of heat by a body 2 passing under body 1, and heat losses of the bodies."""
     thermal, heated, heat = end.system.thermal, end.bodies.temperatures, end.system.model.heat
-    if thermal is None or heated is None or heat is None or not end.system.model.motion.passes:
+    passing = [one.motion for one in end.system.model.interfaces if one.motion.passes]
+    if thermal is None or heated is None or heat is None or not passing:
         return {}
     advection = thermal.conduction.advection
     stabilised = advection is not None and advection.stabilised
     ambient = thermal.loads.at(time).ambient
     still = np.zeros(len(heated.rise))
     cooled, _, carried = thermal.conduction.losses(heated.rise, still, ambient=ambient)
-    leaves = advection is not None and end.system.model.motion.center is None
+    leaves = advection is not None and passing[0].center is None
     return {
         "heat_advection": "stabilised" if stabilised else heat.advection,
         "max_cell_peclet_number": None if advection is None else advection.peclet,
@@ -140,39 +220,46 @@ def conclude(end: Snapshot, extra: dict, time: float = 0.0, **recorded) -> tuple
     **recorded
         Further attributes of the result, such as its histories.
     """
-    summary = summarise(end, time) | extra
-    return end, Result(end.interface, profile(end), summary, **recorded)
+    summary = _merged(summarise(end, time), extra)
+    contacts = end.system.ranges_by_name
+    return end, Result(end.interface, profile(end), summary, contacts=contacts, **recorded)
 
 
-def _torque(system: System, friction: np.ndarray) -> float | None:
+def _merged(one: dict, other: dict) -> dict:
+    """Union of two tables and of the tables in them; the other's values replace those of one."""
+    shared = {
+        key: _merged(one[key], table)
+        for key, table in other.items()
+        if isinstance(table, dict) and isinstance(one.get(key), dict)
+    }
+    return one | other | shared
+
+
+def _torque(
+    model: Model, interface: Interface, pairing: Pairing, friction: np.ndarray
+) -> float | None:
     """Friction moment about the axis of rotation of body 1 or 2 [N m]; None without one."""
-    motion = system.model.motion
-    if system.model.kinematics == "axisymmetric" and motion.velocity is None:
-        return float(system.weights @ (friction * system.pairing.points[:, 0]))
+    motion = interface.motion
+    if model.kinematics == "axisymmetric" and motion.velocity is None:
+        return float(pairing.weights @ (friction * pairing.points[:, 0]))
     if motion.center is None:
         return None
-    arms = system.pairing.points[:, :2] - np.array(motion.center)
-    return float(system.weights @ (friction * np.linalg.norm(arms, axis=1)))
+    arms = pairing.points[:, :2] - np.array(motion.center)
+    return float(pairing.weights @ (friction * np.linalg.norm(arms, axis=1)))
 
 
-def _guide_reactions(system: System, pressure: np.ndarray) -> dict[str, float]:
-    """Guide reactions on body 1 along the constrained motions of the holder [N, N m].
+def _guide_reactions(system: System, holder: Holder, pressure: np.ndarray) -> dict[str, float]:
+    """Guide reactions on the bodies of a holder along its constrained motions [N, N m].
 
     For the whole body: the forces between the halves of a symmetric section cancel.
     """
-    model, points = system.model, system.pairing.on_body_1
-    reactions = {}
-    for name, motion in guides(model).items():
-        if name not in model.holder.free:
-            work = np.einsum("ni,ni->n", motion.at(points), system.traction_direction)
-            given = applied(model.holder, motion) + float(system.dead_resultant(motion)[0])
-            reaction = float(system.weights @ (pressure * work)) - given
-            reactions[_GUIDES[name]] = 0.0 if model.symmetry else reaction
+    model, reactions = system.model, {}
+    for name, motion in guides(model.kinematics, holder).items():
+        if name not in holder.free:
+            mode, load = RigidMode(motion, load=0.0, bodies=holder.bodies), applied(holder, motion)
+            response = hold(system.contacts, system.traction_direction, [mode]).force_response
+            dead = system.dead_resultant(motion)[list(holder.bodies)].sum()
+            reaction = float(system.weights @ (pressure * response[:, 0])) - load - float(dead)
+            cancels = bool(model.symmetry) and name != "z"
+            reactions[_GUIDES[name]] = 0.0 if cancels else reaction
     return reactions
-
-
-def _rotations(end: Snapshot) -> dict[str, float]:
-    """Rotation of the holder about each of its free axes [rad]."""
-    turned, free = end.motion.rotation, end.system.model.holder.free
-    pairs = zip(_ROTATIONS.items(), turned, strict=True)
-    return {key: float(angle) for (name, key), angle in pairs if name in free}

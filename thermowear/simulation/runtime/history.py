@@ -13,6 +13,7 @@ from ...errors import ComputationError, UnwritableError
 from ...interrupts import RecordedSignals
 from ...model.analyses import SteppedAnalysis
 from ...results import (
+    ContactRow,
     CycleRow,
     Frame,
     FrictionHistory,
@@ -176,7 +177,9 @@ class AnalysisHistory(ABC, Generic[State]):
         if shown is not None:
             with self._system.phases("output"):
                 self._outputs[state.time] = shown.interface, shown.friction, shown.track
-                self._observer.output(state.time, *self._outputs[state.time])
+                contacts = shown.system.ranges_by_name
+                interface, friction, track = self._outputs[state.time]
+                self._observer.output(state.time, interface, friction, track, contacts)
         self._keep_frame(state)
         if self.may_restart(state):
             self._mark_restart(state)
@@ -228,6 +231,7 @@ class AnalysisHistory(ABC, Generic[State]):
             friction=friction,
             track=track,
             heat=self.table(HeatRow),
+            contact_history=self.table(ContactRow),
             stopped=stopped,
         )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from ...errors import CaseError, other_mesh
 from ...results import (
+    ContactRow,
     CycleRow,
     Frame,
     FrictionInterface,
@@ -22,7 +23,7 @@ from ...results import (
 from ...serialise import serialisable
 from ..system.system import System
 
-AnyRow = HistoryRow | HeatRow | LoadRow | CycleRow
+AnyRow = HistoryRow | HeatRow | ContactRow | LoadRow | CycleRow
 
 _ROUNDING = 1e-9  # relative to the contact's length
 
@@ -83,9 +84,9 @@ class Saved:
     @classmethod
     def now(cls, system: System, progress: Progress) -> Saved:
         """Checkpoint of an analysis that started with a system."""
-        pairing, nodes = system.pairing, system.elastic.nodes()
+        contacts, nodes = system.contacts, system.elastic.nodes()
         mesh = mesh_checksum(system)
-        return cls(pairing.points, pairing.gap, len(nodes), nodes.sum(axis=0), progress, mesh)
+        return cls(contacts.points, contacts.gap, len(nodes), nodes.sum(axis=0), progress, mesh)
 
     def of(self, system: System) -> Progress:
         """Progress of the checkpoint, checked to belong to a system.
@@ -106,7 +107,8 @@ class Saved:
 
     def _began_with(self, system: System) -> bool:
         """Compare up to rounding: in parallel a positioned mesh is not bitwise reproducible."""
-        other, near = Saved.now(system, self.progress), _ROUNDING * system.pairing.extent
+        other = Saved.now(system, self.progress)
+        near = _ROUNDING * max(pairing.extent for pairing in system.contacts.each)
         if (self.nodes, self.gap.shape) != (other.nodes, other.gap.shape):
             return False
         pairs = (self.points, other.points), (self.gap, other.gap)
@@ -142,8 +144,9 @@ class Observer:
         interface: InterfaceFields,
         friction: FrictionInterface | None = None,
         track: WornTrack | None = None,
+        contacts: Mapping[str, slice] | None = None,
     ) -> None:
-        """An output time was reached."""
+        """An output time was reached; `contacts` are as in `results.Result`."""
 
     def checkpoint(self, saved: Saved) -> None:
         """A checkpoint to restart from; its data differ from rank to rank."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -12,28 +13,38 @@ from ...bulk.bodies import Bodies, distribute
 from ...bulk.kinematics import Kinematics, kinematics_of
 from ...bulk.mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
 from ...bulk.solver_choice import SolverChoice, choose_solver
-from ...contact.operators.rigid_motion import RigidMode, hold, sliding
+from ...contact.operators.pressure import Basis, joined_bases
+from ...contact.operators.rigid_motion import (
+    RigidMode,
+    Sliding,
+    hold,
+    joined_sliding,
+    sliding,
+)
 from ...contact.operators.traces import gap_trace
+from ...contact.search.contacts import Contacts
 from ...contact.search.face import gather_faces
 from ...contact.search.pairing import Pairing
 from ...contact.search.part_values import PartValues
+from ...contact.ties.joints import elastic_joints, glued_points
 from ...geometry.mesh.held import check_held, free_motions
 from ...geometry.mesh.mixed import AnyMesh
+from ...model.interface import Interface
 from ...model.model import Model, Zone
 from ...parallel import on_root
 from ...timer import Phases
 from .contact_points import (
     contact_points,
-    facing_parts,
     groups_of_parts,
     require_laws,
     softness_of_parts,
     worn_contact_points,
 )
-from .rigid_modes import dead_load, dead_resultant, rigid_modes
+from .face_regions import divided_faces, require_regions
+from .rigid_modes import dead_load, dead_resultant, load_direction, rigid_modes
 from .setup_cache import SetupCache, inputs
 from .system import System
-from .thermal_system import coupled_without_condensation, thermal_system
+from .thermal_system import coupled_without_condensation, heat_partition, thermal_system
 from .worn_geometry import WornGeometry
 
 
@@ -69,47 +80,49 @@ def build(
         If the bodies cannot be meshed or paired.
     """
     parts, made_from = SetupCache() if parts is None else parts, inputs(model, zone)
-    interface = model.interface
     kinematics = kinematics_of(model.kinematics, model.thickness, model.sector)
     with phases("mesh"):
         bodies = parts.get("bodies", made_from.mesh, lambda: _meshed(model, comm, zone, worn))
     discretisation = model.discretisation
-    choice = choose_solver(discretisation.solver, bodies, discretisation.degree, single)
+    glued_faces = [tie.faces for tie in model.ties]
+    choice = choose_solver(
+        discretisation.solver, bodies, discretisation.degree, single, glued_faces
+    )
     with phases("pair"):
-        pairing, basis = parts.get(
+        contacts, basis = parts.get(
             "points", made_from.points, lambda: _paired(model, comm, kinematics, bodies, worn)
         )
-    coupled = coupled_without_condensation(choice, len(pairing.weights))
+    coupled = coupled_without_condensation(choice, len(contacts.weights))
     made_from = made_from.solved_by(choice.name, coupled)
     with phases("assemble elasticity"):
+        glued = parts.get("glued", made_from.mesh, lambda: _glued(model, comm, kinematics, bodies))
         elastic, trace = parts.get(
             "elasticity",
             made_from.elasticity,
-            lambda: elastic_system(model, kinematics, bodies, pairing, choice),
+            lambda: elastic_system(model, kinematics, bodies, contacts, choice, glued),
         )
-    facing = facing_parts(bodies, pairing)
-    dead = dead_load(model.holder, elastic)
-    upper = model.bodies[0].parts
+    dead = dead_load(model, contacts, elastic, trace)
     driven = rigid_modes(
-        model.holder, pairing, lambda motion: dead_resultant(elastic, upper, dead, motion)[0]
+        model.holders, contacts, lambda motion: dead_resultant(elastic, model.bodies, dead, motion)
     )
     thermal, heat = None, model.heat
     if heat is not None:
-        partition = interface.heat_partition(facing, model.materials)
+        partition = heat_partition(model, bodies, contacts)
+        at = contacts, glued, elastic, basis, partition
         thermal = parts.get(
             "conduction",
             made_from.conduction,
-            lambda: thermal_system(model, heat, pairing, elastic, basis, partition, phases, choice),
+            lambda: thermal_system(model, heat, *at, phases, choice),
         )
         thermal = replace(thermal, face=replace(thermal.face, partition=partition))
     return System(
         model=model,
         bodies=bodies,
-        pairing=pairing,
+        contacts=contacts,
         elastic=elastic,
         trace=trace,
         basis=basis,
-        **sliding_contact(model, kinematics, pairing, driven),
+        **sliding_contact(model, kinematics, contacts, driven),
         dead_load=dead,
         thermal=thermal,
         choice=choice,
@@ -143,32 +156,68 @@ def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) ->
 def _check_held(model: Model, mesh: AnyMesh) -> None:
     """Reject a body that its supports leave free to move."""
     clamped, *guided = supports(model)
-    for body in model.bodies:
-        free = free_motions(mesh, body.parts, clamped, guided)
+    for group in model.groups:
+        bodies = [model.bodies[index] for index in group]
+        parts = tuple(part for body in bodies for part in body.parts)
+        free = free_motions(mesh, parts, clamped, guided)
         if model.kinematics == "axisymmetric":
             free = ["along z" for name in free if name == "along y"]
-        check_held(body.name, free)
+        check_held(" and ".join(body.name for body in bodies), free)
 
 
 def _paired(
     model: Model, comm, kinematics: Kinematics, bodies: Bodies, worn: WornGeometry | None
-) -> tuple[Pairing, np.ndarray]:
-    of_parts = PartValues(softness_of_parts(model), groups_of_parts(model))
-    gathered = gather_faces(bodies, model.interface.faces, of_parts)
-    require_laws(model, bodies, gathered)
-    wears = bool(model.interface.wearing_in_place)
-    faces = [replace(face, wears=wears) for face in gathered]
+) -> tuple[Contacts, Basis]:
+    """Contact points of all interfaces, and their pressure spaces."""
+    gathered = [_gathered(model, one, bodies) for one in model.interfaces]
+    require_regions(model, gathered)
+    pairs = zip(model.interfaces, gathered, strict=True)
+    each = [_paired_faces(model, *pair, comm, kinematics, bodies, worn) for pair in pairs]
+    pairings, bases = zip(*each, strict=True)
+    contacts = Contacts(pairings, tuple(interface.bodies for interface in model.interfaces))
+    return contacts, joined_bases(bases)
+
+
+def _gathered(model: Model, interface: Interface, bodies: Bodies) -> tuple:
+    """Both faces of an interface, with the softness and groups of their materials."""
+    of_parts = PartValues(softness_of_parts(model, interface), groups_of_parts(model, interface))
+    return gather_faces(bodies, interface.faces, of_parts)
+
+
+def _paired_faces(
+    model: Model,
+    interface: Interface,
+    gathered: tuple,
+    comm,
+    kinematics: Kinematics,
+    bodies: Bodies,
+    worn: WornGeometry | None,
+) -> tuple[Pairing, Basis]:
+    divided = divided_faces(model, interface, gathered)
+    require_laws(model, interface, bodies, divided)
+    wears = bool(interface.wearing_in_place)
+    faces = [replace(face, wears=wears) for face in divided]
     if worn is None:
-        return contact_points(model, comm, kinematics, *faces)
-    return worn_contact_points(model, kinematics, worn, *faces)
+        return contact_points(model, interface, comm, kinematics, *faces)
+    return worn_contact_points(model, interface, kinematics, worn, *faces)
+
+
+def _glued(model: Model, comm, kinematics: Kinematics, bodies: Bodies) -> list[Pairing]:
+    """Opposite points of the glued faces."""
+    degree = model.discretisation.degree
+    return [
+        glued_points(*gather_faces(bodies, tie.faces), kinematics, degree, comm)
+        for tie in model.ties
+    ]
 
 
 def elastic_system(
     model: Model,
     kinematics: Kinematics,
     bodies: Bodies,
-    pairing: Pairing,
+    contacts: Contacts,
     choice: SolverChoice,
+    glued: Sequence[Pairing] = (),
 ) -> tuple[Elasticity, sp.csr_matrix]:
     """Assemble the elastic bodies and set up their solver. Every rank calls.
 
@@ -186,9 +235,18 @@ def elastic_system(
     degree = model.discretisation.degree
     clamped, symmetric, rollers, mid_plane = supports(model)
     elastic = elasticity(
-        bodies, kinematics, degree, materials, clamped, symmetric, rollers, choice, mid_plane
+        bodies,
+        kinematics,
+        degree,
+        materials,
+        clamped,
+        symmetric,
+        rollers,
+        choice,
+        mid_plane,
+        joints=lambda spaces: elastic_joints(spaces, glued),
     )
-    return elastic, gap_trace(elastic.spaces, pairing)
+    return elastic, gap_trace(elastic.spaces, contacts)
 
 
 def supports(model: Model) -> tuple[tuple[str, ...], ...]:
@@ -201,26 +259,41 @@ def supports(model: Model) -> tuple[tuple[str, ...], ...]:
 
 
 def sliding_contact(
-    model: Model, kinematics: Kinematics, pairing: Pairing, driven: tuple[RigidMode, ...]
+    model: Model, kinematics: Kinematics, contacts: Contacts, driven: tuple[RigidMode, ...]
 ) -> dict[str, Any]:
-    """Attributes of a `System` that follow from its contact points and rigid modes of the holder.
+    """Attributes of a `System` that follow from its contact points and rigid modes of the holders.
 
-    Sliding of body 1, its speed, the traction direction and the holder.
+    Sliding of the first bodies, its speed, the traction direction and the holders.
     """
-    motion, slides = model.motion, None
-    traction_direction, speed = pairing.normals, np.zeros(len(pairing.weights))
-    if not motion.at_rest:
-        velocity = kinematics.sliding(pairing.points, motion, motion.center, motion.across)
-        slides = sliding(velocity, pairing.normals, model.holder.load_direction)
+    slides, traction_direction = None, contacts.normals
+    speed = np.zeros(len(contacts.weights))
+    if not all(interface.motion.at_rest for interface in model.interfaces):
+        each = zip(model.interfaces, contacts.each, strict=True)
+        slides = joined_sliding(
+            [_sliding(model, one, kinematics, pairing) for one, pairing in each]
+        )
         if model.sector_of_ring:
             slides = replace(slides, along=np.zeros_like(slides.along))
-        friction = model.interface.nominal_friction, model.interface.transverse_friction
-        traction_direction = slides.traction_direction(pairing.normals, *friction)
+        friction, transverse = (
+            contacts.per_point([getattr(one, name) for one in model.interfaces])[:, None]
+            for name in ("nominal_friction", "transverse_friction")
+        )
+        traction_direction = slides.traction_direction(contacts.normals, friction, transverse)
         speed = slides.speed
-    holder = hold(pairing, traction_direction, driven)
+    holder = hold(contacts, traction_direction, driven)
     return {
         "slides": slides,
         "speed": speed,
         "traction_direction": traction_direction,
         "holder": holder,
     }
+
+
+def _sliding(
+    model: Model, interface: Interface, kinematics: Kinematics, pairing: Pairing
+) -> Sliding:
+    """Sliding at the points of an interface."""
+    motion, velocity = interface.motion, np.zeros((len(pairing.weights), 3))
+    if not motion.at_rest:
+        velocity = kinematics.sliding(pairing.points, motion, motion.center, motion.across)
+    return sliding(velocity, pairing.normals, load_direction(model, interface, pairing))

@@ -1,4 +1,4 @@
-"""Operating conditions at the interface (load, speed, friction, conductance) at a given time."""
+"""Operating conditions at the interfaces (load, speed, friction, conductance) at a given time."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ class InterfaceConditions:
     Attributes
     ----------
     load : ndarray, shape (k,)
-        Generalised forces on the free motions of the holder [N or N m].
+        Generalised forces on the free motions of the holders [N or N m].
     speed : ndarray
         Sliding speed [m/s].
     friction : ndarray
         Coefficient of friction.
     wear : ndarray, shape (n_wearing, n)
-        Factor of the wear rate of each wearing body.
+        Factor of the wear rate of the first and of the second faces, if any of them wear.
     conductance : ndarray
         Contact conductance; infinite in perfect contact [W/(m² K)].
     temperature, depth : ndarray, shape (n_wearing, n)
@@ -83,6 +83,11 @@ def _difference(a: np.ndarray, b: np.ndarray) -> float:
     return float(np.abs(a - b).max() / max(np.abs(a).max(), np.abs(b).max()))
 
 
+def _of_points(state: LocalState, points: slice) -> LocalState:
+    """State at a range of the contact points."""
+    return LocalState(*(v[points] if isinstance(v, np.ndarray) else v for v in state))
+
+
 def _part(value: float) -> float:
     """History factor of a load, speed or friction; values at rounding level count as 0."""
     return value if value > _ROUNDING else 0.0
@@ -104,14 +109,13 @@ class ConditionModel:
     """
 
     def __init__(self, system: System):
-        model, interface = system.model, system.model.interface
+        model = system.model
         self._system = system
-        self._interface = interface
-        self._friction_law = interface.friction_law
-        self.depends_on_state, self._friction_varies = interface.varies, interface.friction_varies
-        self._load, self._motion = model.holder.history, model.motion.history
+        self._interfaces = list(zip(model.interfaces, system.contacts.ranges, strict=True))
+        self.depends_on_state = any(interface.varies for interface in model.interfaces)
         self._courses = model.histories
-        self.constant = not self.depends_on_state and not self._courses
+        depths = any("depth" in law.variables for law in system.laws.values())
+        self.constant = not self.depends_on_state and not self._courses and not depths
 
     def at(
         self,
@@ -135,14 +139,15 @@ class ConditionModel:
         depth : ndarray, shape (n_wearing, n), optional
             Wear depths of the wearing bodies, by default 0 [m].
         """
-        system = self._system
-        pressed = 1.0 if self._load is None else _part(self._load.factor_at(time))
+        holder = self._system.holder
+        histories = holder.histories
+        pressed = [1.0 if given is None else _part(given.factor_at(time)) for given in histories]
         speed, temperatures = self._speed(time), self._temperatures(faces)
         at = LocalState(pressure, speed, (temperatures[0] + temperatures[1]) / 2)
         friction = self._friction(time, at)
         wear, temperature, worn = self._wear(temperatures, depth, pressure, speed, friction)
         return InterfaceConditions(
-            load=pressed * system.holder.load + system.holder.dead,
+            load=np.array(pressed) * holder.load + holder.dead,
             speed=speed,
             friction=friction,
             wear=wear,
@@ -157,8 +162,9 @@ class ConditionModel:
 
     def _speed(self, time: float) -> np.ndarray:
         """Sliding speed at the points, shape (n,) [m/s]."""
-        part = 1.0 if self._motion is None else _part(self._motion.at(time))
-        return part * self._system.speed
+        histories = [interface.motion.history for interface, _ in self._interfaces]
+        parts = [1.0 if given is None else _part(given.at(time)) for given in histories]
+        return self._system.contacts.per_point(parts) * self._system.speed
 
     def _temperatures(self, faces: ThermalState | None) -> np.ndarray:
         """Temperatures of both faces, shape (2, n) [K]; 0 and unused without heat."""
@@ -169,9 +175,13 @@ class ConditionModel:
 
     def _friction(self, time: float, at: LocalState) -> np.ndarray:
         """Coefficient of friction, at least 0; `require_friction` checks the converged state."""
-        history = self._interface.friction_history
-        factor = 1.0 if history is None else _part(history.at(time))
-        return factor * np.maximum(self._friction_law.value(at), 0.0)
+        result = np.empty(len(self._system.weights))
+        for interface, points in self._interfaces:
+            history = interface.friction_history
+            factor = 1.0 if history is None else _part(history.at(time))
+            value = interface.friction_law.value(_of_points(at, points))
+            result[points] = factor * np.maximum(value, 0.0)
+        return result
 
     def require_friction(
         self, time: float, pressure: np.ndarray, faces: ThermalState | None
@@ -182,45 +192,56 @@ class ConditionModel:
         ------
         ComputationError
         """
-        if not self._friction_law.variables:
-            return
         mean, speed = self._temperatures(faces).mean(axis=0), self._speed(time)
-        value = self._friction_law.value(LocalState(pressure, speed, mean))
-        lowest = int(np.argmin(np.where(pressure > 0, value, np.inf)))
-        if pressure[lowest] > 0 and value[lowest] < 0:
-            raise ComputationError(
-                f"contact.friction: {value[lowest]:.4g} at p = {pressure[lowest]:.4g} Pa, "
-                f"v = {speed[lowest]:.4g} m/s, T = {mean[lowest]:.4g} K; must not be negative: "
-                "bound the law, max(0.05, …), or reduce load or speed"
-            )
+        for interface, points in self._interfaces:
+            if not interface.friction_law.variables:
+                continue
+            at = _of_points(LocalState(pressure, speed, mean), points)
+            value, presses = interface.friction_law.value(at), pressure[points] > 0
+            lowest = int(np.argmin(np.where(presses, value, np.inf)))
+            if presses[lowest] and value[lowest] < 0:
+                p, v, T = (given[points][lowest] for given in (pressure, speed, mean))
+                raise ComputationError(
+                    f"{interface.table}.friction: {value[lowest]:.4g} at p = {p:.4g} Pa, "
+                    f"v = {v:.4g} m/s, T = {T:.4g} K; must not be negative: "
+                    "bound the law, max(0.05, …), or reduce load or speed"
+                )
 
     def _wear(self, temperatures, depth, pressure, speed, friction) -> np.ndarray:
         """Factors of the wear rates by tables and friction; temperatures and depths for the laws.
 
         Each of shape (n_wearing, n), stacked. A state variable that a law does not use is 0.
         """
-        wearing, groups = self._interface.wear.items(), self._system.pairing.groups
-        factors, used, depths = result = np.zeros((3, len(wearing), len(pressure)))
-        relative = friction / self._interface.nominal_friction if self._friction_varies else None
-        for row, (index, wear) in enumerate(wearing):
-            at = LocalState(pressure, speed, temperatures[index])
-            for group, each in enumerate(wear.each):
-                np.copyto(factors[row], each.factor(at, relative), where=groups[index] == group)
-            variables = self._system.laws[index].variables
-            if "T" in variables:
-                used[row] = temperatures[index]
-            if "depth" in variables and depth is not None:
+        laws, pairings = self._system.laws, self._system.contacts.each
+        factors, used, depths = result = np.zeros((3, len(laws), len(pressure)))
+        for row, (side, law) in enumerate(laws.items()):
+            for (interface, points), pairing in zip(self._interfaces, pairings, strict=True):
+                if side not in interface.wear:
+                    continue
+                at = _of_points(LocalState(pressure, speed, temperatures[side]), points)
+                varies = interface.friction_varies
+                relative = friction[points] / interface.nominal_friction if varies else None
+                for group, each in enumerate(interface.wear[side].each):
+                    own = pairing.groups[side] == group
+                    np.copyto(factors[row, points], each.factor(at, relative), where=own)
+            if "T" in law.variables:
+                used[row] = temperatures[side]
+            if "depth" in law.variables and depth is not None:
                 depths[row] = depth[row]
         return result
 
     @cached_property
-    def _conductance_law(self) -> Law | None:
-        return self._interface.conductance_law(self._system.facing, self._system.model.materials)
+    def _conductance_laws(self) -> list[Law | None]:
+        materials, facing = self._system.model.materials, self._system.facing
+        each = zip(self._interfaces, facing, strict=True)
+        return [interface.conductance_law(parts, materials) for (interface, _), parts in each]
 
     def _conductance(self, at: LocalState, touching: np.ndarray) -> np.ndarray:
         """Conductance of touching points and of the gap at the others, shape (n,) [W/(m² K)]."""
+        result = np.zeros(len(touching))
         if self._system.thermal is None:
-            return np.zeros(len(touching))
-        law = self._conductance_law
-        closed = np.inf if law is None else law.value(at)
-        return np.where(touching, closed, self._interface.gap_conductance)
+            return result
+        for (interface, points), law in zip(self._interfaces, self._conductance_laws, strict=True):
+            closed = np.inf if law is None else law.value(_of_points(at, points))
+            result[points] = np.where(touching[points], closed, interface.gap_conductance)
+        return result

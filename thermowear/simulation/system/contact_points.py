@@ -9,7 +9,7 @@ import numpy as np
 
 from ...bulk.bodies import Bodies
 from ...bulk.kinematics import Kinematics
-from ...contact.operators.pressure import jumps, pressure_basis
+from ...contact.operators.pressure import Basis, jumps, pressure_basis
 from ...contact.search.face import Face, Surface
 from ...contact.search.pairing import Pairing, pair, paired
 from ...contact.search.projection import ray_intersections
@@ -18,6 +18,7 @@ from ...contact.wear.worn_face import directions_between
 from ...errors import CaseError
 from ...laws.motions import RigidMotion
 from ...model.body import Facing
+from ...model.interface import Interface
 from ...model.model import Model
 from .initial_shape import initial_gap
 from .worn_geometry import WornGeometry
@@ -30,43 +31,43 @@ _ALONG = 0.05
 """Largest overhang past the end of the other face by the holder's motion, relative to the face."""
 
 
-def softness_of_parts(model: Model) -> dict[str, float]:
+def softness_of_parts(model: Model, interface: Interface) -> dict[str, float]:
     """Softness of each part of the bodies for `contact.search.common_face`; only ratios count.
 
     The gap between opposite points closes by the elastic deflection of both bodies. In continued
     sliding wear the deflection is soon small compared with the wear depths: the shares are then in
     the ratio of the wear rates.
     """
-    wearing = model.interface.wearing_in_place
+    wearing = interface.wearing_in_place
     if not wearing:
         return {part: material.compliance for part, material in model.materials.items()}
     largest = max(wearing.values()) or 1.0  # all rates are 0 below a threshold
     softness: dict[str, float] = {}
-    for index, body in enumerate(model.bodies):
-        share = max(wearing.get(index, 0.0) / largest, _LEAST)
-        softness |= dict.fromkeys(body.parts, share)
+    for side, index in enumerate(interface.bodies):
+        share = max(wearing.get(side, 0.0) / largest, _LEAST)
+        softness |= dict.fromkeys(model.bodies[index].parts, share)
     return softness
 
 
-def groups_of_parts(model: Model) -> dict[str, int]:
+def groups_of_parts(model: Model, interface: Interface) -> dict[str, int]:
     """Group of equally wearing materials of each part of the bodies; -1 without a wear law.
 
     Zero for all parts of a body that wears by one law, or not at all.
     """
-    groups = {part: 0 for body in model.bodies for part in body.parts}
-    for index, wear in model.interface.wear.items():
-        for part in model.bodies[index].parts:
+    groups = {part: 0 for index in interface.bodies for part in model.bodies[index].parts}
+    for side, wear in interface.wear.items():
+        for part in model.bodies[interface.bodies[side]].parts:
             group = wear.group_of(part)
             groups[part] = -1 if group is None else group
     return groups
 
 
 def contact_points(
-    model: Model, comm, kinematics: Kinematics, face_1, face_2
-) -> tuple[Pairing, np.ndarray]:
+    model: Model, interface: Interface, comm, kinematics: Kinematics, face_1, face_2
+) -> tuple[Pairing, Basis]:
     """Contact points, with the gap of the initial shape, and pressure space Ψ."""
-    pairing, basis = _points(model, kinematics, face_1, face_2, comm=comm)
-    shape = model.interface.initial_shape
+    pairing, basis = _points(model, interface, kinematics, face_1, face_2, comm=comm)
+    shape = interface.initial_shape
     if shape is not None:
         pairing = replace(pairing, gap=initial_gap(comm, shape, pairing))
     return pairing, basis
@@ -74,11 +75,12 @@ def contact_points(
 
 def worn_contact_points(
     model: Model,
+    interface: Interface,
     kinematics: Kinematics,
     worn: WornGeometry,
     face_1: Face | Surface,
     face_2: Face | Surface,
-) -> tuple[Pairing, np.ndarray]:
+) -> tuple[Pairing, Basis]:
     """Contact points of worn faces at the present position of body 1, with the unworn gap.
 
     The gap is measured between points opposite along the directions of the mesh motion: a moved
@@ -92,10 +94,11 @@ def worn_contact_points(
     closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
     if worn.pieces is None:
         max_overhang = _max_overhang(worn, face_1)
-        pairing, basis = _points(model, kinematics, closer, face_2, _SLIVER, max_overhang)
+        settings = model, interface, kinematics
+        pairing, basis = _points(*settings, closer, face_2, _SLIVER, max_overhang)
     else:
         pairing = paired(closer, face_2, kinematics, worn.pieces)
-        basis = pressure_basis(pairing, model.pressure_degree)
+        basis = pressure_basis(pairing, model.pressure_degree(interface))
     first, second = pairing.sides
     on_face = face_1.points(first.facet, first.t)
     to = motion.at(on_face)
@@ -133,18 +136,19 @@ def _max_overhang(worn: WornGeometry, face_1: Face | Surface) -> float:
 
 def _points(
     model: Model,
+    interface: Interface,
     kinematics: Kinematics,
     face_1,
     face_2,
     sliver: float = SLIVER,
     max_overhang: float = OVERHANG_TOLERANCE,
     comm=None,
-) -> tuple[Pairing, np.ndarray]:
+) -> tuple[Pairing, Basis]:
     """Contact points of two faces, and pressure space Ψ; parameters as in `pair`."""
     degree = model.discretisation.degree
-    if model.interface.pressure_degree == "lobatto":  # at the nodes of body 1's facets
+    if interface.pressure_degree == "lobatto":  # at the nodes of body 1's facets
         pairing = pair(face_1, face_2, kinematics, degree + 1, refine=False)
-        _check_jumps(model, pairing)
+        _check_jumps(model, interface, pairing)
         return pairing, np.eye(len(pairing.weights))
     pairing = pair(
         face_1,
@@ -155,13 +159,13 @@ def _points(
         max_overhang=max_overhang,
         comm=comm,
     )
-    _check_jumps(model, pairing)
-    return pairing, pressure_basis(pairing, model.pressure_degree)
+    _check_jumps(model, interface, pairing)
+    return pairing, pressure_basis(pairing, model.pressure_degree(interface))
 
 
-def _check_jumps(model: Model, pairing: Pairing) -> None:
+def _check_jumps(model: Model, interface: Interface, pairing: Pairing) -> None:
     """Reject settings that do not determine a pressure with jumps between materials."""
-    degree, method = model.discretisation.degree, model.interface.method.name
+    degree, method = model.discretisation.degree, interface.method.name
     if not jumps(pairing):
         return
     where = "where the materials of a contact face wear by different laws the pressure jumps"
@@ -169,20 +173,23 @@ def _check_jumps(model: Model, pairing: Pairing) -> None:
         raise CaseError(f'contact.method: {method!r} is not supported; {where}; use "condensed"')
     if degree < 2:
         raise CaseError(f"mesh.degree: found {degree}; {where}, which needs 2 or more")
-    if model.pressure_degree >= degree:
+    if model.pressure_degree(interface) >= degree:
         raise CaseError(
             f"contact.pressure_degree: {where}, which needs a degree below mesh.degree ({degree})"
         )
 
 
-def require_laws(model: Model, bodies: Bodies, faces: Sequence[Face | Surface]) -> None:
+def require_laws(
+    model: Model, interface: Interface, bodies: Bodies, faces: Sequence[Face | Surface]
+) -> None:
     """Reject parts of a wearing face without a wear law. Every rank calls.
 
     Raises
     ------
     CaseError
     """
-    for body, face in zip(model.bodies, faces, strict=True):
+    for index, face in zip(interface.bodies, faces, strict=True):
+        body = model.bodies[index]
         parts = _parts_of_facets(bodies, face)
         without = parts[face.group_at(np.arange(len(parts))) < 0]
         if len(without):

@@ -1,16 +1,21 @@
-"""Rigid modes of the holder of body 1, their loads, and the loads on surfaces of the bodies."""
+"""Rigid modes of the holders, their loads, and the loads on surfaces of the bodies."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
+import scipy.sparse as sp
 
 from ...bulk.mechanics.elasticity import Elasticity
-from ...contact.operators.rigid_motion import RigidMode
+from ...contact.operators.rigid_motion import RigidMode, hold
+from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import Pairing
+from ...errors import CaseError
 from ...laws.motions import RigidMotion, rotation, translation
+from ...model.body import Body
 from ...model.conditions import Holder
+from ...model.interface import Interface
 from ...model.model import Model
 from ...parallel import sum_over_ranks
 
@@ -21,7 +26,7 @@ _TURNS = {
     "rotation": (0.0, 0.0, 1.0),
 }
 _GUIDED = {
-    "axisymmetric": (),
+    "axisymmetric": ("z",),
     "3d": ("x", "y", "z", "rotation-x", "rotation-y"),
     "plane-strain": ("x", "z", "rotation"),
     "plane-stress": ("x", "z", "rotation"),
@@ -30,41 +35,74 @@ _GUIDED = {
 
 
 def rigid_modes(
-    holder: Holder, pairing: Pairing, dead: Callable[[RigidMotion], float]
+    holders: Sequence[Holder], contacts: Contacts, dead: Callable[[RigidMotion], np.ndarray]
 ) -> tuple[RigidMode, ...]:
-    """Rigid modes of the holder, the load direction first, with the load or motion of each.
+    """Rigid modes of the holders, each in the order of its free motions, with loads or amplitudes.
 
     A force acts along the load direction at the point of the load, so that its generalised force
     on a motion m is ``F e·m(point)``, e the load direction; moments add their work on its rotation.
 
     Parameters
     ----------
-    holder : Holder
-    pairing : Pairing
+    holders : sequence of Holder
+    contacts : Contacts
     dead : callable
-        Generalised force on a motion of body 1 that does not come from the holder [N or N m].
+        Generalised forces on a motion of each body that do not come from a holder, shape
+        (n_bodies,) [N or N m].
     """
 
-    def mode(name: str) -> RigidMode:
+    def mode(holder: Holder, name: str) -> RigidMode:
         motion, load, approach = _motion(holder, name), holder.closing_moment, holder.approach
-        if holder.free == ("rotation",) and not _closes(motion, pairing):
+        if holder.free == ("rotation",) and not _closes(motion, holder, contacts):
             motion = rotation((0.0, 0.0, -1.0), np.array(holder.pivot))
+        other = float(dead(motion)[list(holder.bodies)].sum())
         if name == "z" and approach is not None:
-            return RigidMode(motion, amplitude=approach, dead=float(dead(motion)))
+            return RigidMode(motion, amplitude=approach, dead=other, bodies=holder.bodies)
         load = applied(holder, motion) if load is None else load
-        return RigidMode(motion, load=load, dead=float(dead(motion)))
+        return RigidMode(
+            motion, load=load, dead=other, bodies=holder.bodies, history=holder.history
+        )
 
-    return tuple(mode(name) for name in holder.free)
+    return tuple(mode(holder, name) for holder in holders for name in holder.free)
 
 
-def guides(model: Model) -> dict[str, RigidMotion]:
-    """Rigid motions by name, conjugate to the guide forces and moments on body 1.
+def guides(kinematics: str, holder: Holder) -> dict[str, RigidMotion]:
+    """Rigid motions by name, conjugate to the guide forces and moments on a holder.
 
-    Along x (and y), upwards, and about the pivot; none in an axisymmetric model.
+    Along x (and y), upwards, and about the pivot; upwards only in an axisymmetric model.
     """
-    up = translation((0.0, 0.0, 1.0) if model.kinematics == "3d" else (0.0, 1.0))
-    names = _GUIDED[model.kinematics]
-    return {name: up if name == "z" else _motion(model.holder, name) for name in names}
+    up = translation((0.0, 0.0, 1.0) if kinematics == "3d" else (0.0, 1.0))
+    return {name: up if name == "z" else _motion(holder, name) for name in _GUIDED[kinematics]}
+
+
+def load_direction(model: Model, interface: Interface, pairing: Pairing) -> np.ndarray:
+    """Unit vector along which the first body of an interface is pressed, shape (gdim,).
+
+    Load direction of its holder, else the opposite of that of the second body, of several bodies
+    with the sense of the mean normal: a body that floats is pressed from both sides. Without a
+    holder that can be pressed, the mean normal.
+    """
+    mean = pairing.weights @ pairing.normals
+    for sign, body in zip((1.0, -1.0), interface.bodies, strict=True):
+        for holder in model.holders:
+            if body in holder.bodies and holder.free:
+                direction = sign * np.array(holder.load_direction)
+                return direction if model.is_pair or direction @ mean >= 0.0 else -direction
+    return mean / np.linalg.norm(mean)
+
+
+def load_directions(model: Model, contacts: Contacts) -> np.ndarray:
+    """Load directions of the first bodies at the contact points, shape (n, gdim)."""
+    each = zip(model.interfaces, contacts.each, strict=True)
+    directions = [load_direction(model, interface, pairing) for interface, pairing in each]
+    return np.repeat(directions, [len(pairing.weights) for pairing in contacts.each], axis=0)
+
+
+def approaches(first: Holder, motions: Sequence[RigidMotion]) -> np.ndarray:
+    """Displacement of the pivot of the first holder along its load per rigid mode, (n_modes,)."""
+    own, direction = len(first.free), np.array(first.load_direction)
+    moved = [motion.at(np.array(first.pivot)) @ direction for motion in motions[:own]]
+    return np.array([*moved, *np.zeros(len(motions) - own)], dtype=float)
 
 
 def applied(holder: Holder, motion: RigidMotion) -> float:
@@ -82,16 +120,44 @@ def _motion(holder: Holder, name: str) -> RigidMotion:
     return translation(holder.load_direction if name == "z" else _AXES[name])
 
 
-def _closes(turn: RigidMotion, pairing: Pairing) -> bool:
+def _closes(turn: RigidMotion, holder: Holder, contacts: Contacts) -> bool:
     """Test whether a rotation closes the gap in the mean."""
-    closing = np.einsum("ni,ni->n", turn.at(pairing.on_body_1), pairing.normals)
-    return bool(pairing.weights @ closing >= 0.0)
+    turning = RigidMode(turn, load=0.0, bodies=holder.bodies)
+    closing = hold(contacts, contacts.normals, [turning]).closure[:, 0]
+    return bool(contacts.weights @ closing >= 0.0)
 
 
-def dead_load(holder: Holder, elastic: Elasticity) -> np.ndarray | None:
-    """Nodal forces of the loads on surfaces, shape (n_owned,) [N]; None without surface loads."""
-    loads = [elastic.spaces.loads(works) for works in surface_loads(holder, elastic)]
+def dead_load(
+    model: Model, contacts: Contacts, elastic: Elasticity, trace: sp.csr_matrix
+) -> np.ndarray | None:
+    """Nodal forces of loads on surfaces and of fluids, shape (n_owned,) [N]; None without them."""
+    each = (works for holder in model.holders for works in surface_loads(holder, elastic))
+    loads = [elastic.spaces.loads(works) for works in each]
+    fluid = fluid_pressure(model, contacts)
+    if fluid is not None:
+        loads.append(trace @ (contacts.weights * fluid))
     return np.sum(loads, axis=0) if loads else None
+
+
+def fluid_pressure(model: Model, contacts: Contacts) -> np.ndarray | None:
+    """Pressure of fluids on the contact faces, shape (n,) [Pa]; None without any.
+
+    Raises
+    ------
+    CaseError
+        If it is negative or not finite at a point.
+    """
+    if all(interface.fluid_pressure is None for interface in model.interfaces):
+        return None
+    axisymmetric = model.kinematics == "axisymmetric"
+    found = np.zeros(len(contacts.weights))
+    for interface, (pairing, own) in zip(model.interfaces, contacts, strict=True):
+        if interface.fluid_pressure is not None:
+            try:
+                found[own] = interface.fluid_pressure.at(pairing.points, axisymmetric)
+            except ValueError as error:
+                raise CaseError(f"{interface.table}.fluid_pressure: {error}") from None
+    return found
 
 
 def surface_loads(holder: Holder, elastic: Elasticity) -> list[list[Callable]]:
@@ -106,24 +172,25 @@ def surface_loads(holder: Holder, elastic: Elasticity) -> list[list[Callable]]:
 
 
 def dead_resultant(
-    elastic: Elasticity, upper: tuple[str, ...], forces: np.ndarray | None, motion: RigidMotion
+    elastic: Elasticity,
+    bodies: Sequence[Body],
+    forces: np.ndarray | None,
+    motion: RigidMotion,
 ) -> np.ndarray:
-    """Generalised forces of nodal forces on a rigid motion of body 1 and of body 2, shape (2,).
+    """Generalised forces of nodal forces on a rigid motion of each body, shape (n_bodies,).
 
     Every rank calls.
 
     Parameters
     ----------
     elastic : Elasticity
-    upper : tuple of str
-        Parts of body 1.
+    bodies : sequence of Body
     forces : ndarray or None, shape (n_owned,) [N]
     motion : RigidMotion
     """
     if forces is None:
-        return np.zeros(2)
+        return np.zeros(len(bodies))
     nodes = elastic.nodes()
     work = (forces.reshape(nodes.shape) * motion.at(nodes)).sum(axis=1)
-    on_1 = elastic.owned_by(*upper)
-    parts = np.array([work[on_1].sum(), work[~on_1].sum()])
+    parts = np.array([work[elastic.owned_by(*body.parts)].sum() for body in bodies])
     return sum_over_ranks(elastic.bodies.comm, parts)

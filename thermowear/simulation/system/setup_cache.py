@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from ...model.model import Model, Zone
 from .contact_points import groups_of_parts, softness_of_parts
+from .face_regions import regions_of
 
 Part = TypeVar("Part")
 
@@ -68,14 +69,24 @@ class CacheKeys:
 
 def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
     """Cache keys of a model meshed for a zone (by default the expected contact zone)."""
-    interface, materials, heat = model.interface, model.materials, model.heat
+    interfaces, materials, heat = model.interfaces, model.materials, model.heat
     zone = model.expected_zone if zone is None else zone
     section = model.kinematics, model.thickness, model.sector
     supports = model.symmetry, *((b.fixed, b.rollers, b.mid_plane) for b in model.bodies)
-    spaces = model.discretisation.degree, interface.pressure_degree
-    mesh = (section, supports, model.meshes, spaces, zone)
-    shares = softness_of_parts(model), bool(interface.wearing_in_place)
-    points = (mesh, interface.initial_shape, shares, groups_of_parts(model))
+    spaces = model.discretisation.degree, [one.pressure_degree for one in interfaces]
+    mesh = (section, supports, model.meshes, spaces, [tie.faces for tie in model.ties], zone)
+    faces = [
+        (
+            one.faces,
+            one.initial_shape,
+            softness_of_parts(model, one),
+            bool(one.wearing_in_place),
+            groups_of_parts(model, one),
+            regions_of(one),
+        )
+        for one in interfaces
+    ]
+    points = (mesh, faces)
     strained = {part: (m.young_modulus, m.poisson_ratio) for part, m in materials.items()}
     if heat is None:
         return CacheKeys(mesh, points, (points, strained), ())
@@ -85,5 +96,7 @@ def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
         part: (m.conductivity, m.conductivity_factor, m.density, m.specific_heat)
         for part, m in materials.items()
     }
-    carried = model.motion if heat.advection == "resolved" else None
-    return CacheKeys(mesh, points, elasticity, (elasticity, conducting, heat, carried))
+    motions = [interface.motion for interface in interfaces]
+    carried = motions if heat.advection == "resolved" else None
+    joints = [tie.conductance for tie in model.ties]
+    return CacheKeys(mesh, points, elasticity, (elasticity, conducting, heat, carried, joints))

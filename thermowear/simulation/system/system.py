@@ -5,8 +5,10 @@ Set-up results (mesh, factors, condensed operators) are cached and shared by the
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import scipy.sparse as sp
@@ -21,19 +23,21 @@ from ...contact.operators.condensation import (
     pressure_loads,
 )
 from ...contact.operators.coupled_heat import CoupledHeat
-from ...contact.operators.rigid_motion import RigidHolder, Sliding, hold
+from ...contact.operators.rigid_motion import RigidHolder, RigidMode, Sliding, hold
 from ...contact.operators.thermal_opening import DistortionRows, OpeningStorage, ThermalOpening
 from ...contact.operators.traces import vector_trace
+from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import Pairing
 from ...laws.distribution import Distribution
 from ...laws.interfaces import Law
-from ...laws.motions import RigidMotion
+from ...laws.motions import RigidMotion, combined
 from ...model.body import Facing
 from ...model.model import Model, Zone
 from ...parallel import sum_over_ranks
 from ...timer import Phases
 from .contact_points import facing_parts
-from .rigid_modes import dead_resultant
+from .joint_wear import JointWear
+from .rigid_modes import approaches, dead_resultant, load_directions
 from .setup_cache import CacheKeys, SetupCache
 from .thermal_system import ThermalSystem
 from .worn_geometry import WornGeometry
@@ -41,13 +45,13 @@ from .worn_geometry import WornGeometry
 
 @dataclass(frozen=True)
 class System:
-    """Bodies, interface and loads of an analysis.
+    """Bodies, interfaces and loads of an analysis.
 
     Attributes
     ----------
     model : Model
     bodies : Bodies
-    pairing : Pairing
+    contacts : Contacts
     elastic : Elasticity
     trace : csr_matrix, shape (n_owned, n)
         Bᵀ, see `contact.search.pairing`.
@@ -55,13 +59,13 @@ class System:
         Pressure basis Ψ.
     holder : RigidHolder
     slides : Sliding or None
-        Sliding kinematics of body 1; None without motion.
+        Sliding kinematics of the first bodies of the interfaces; None without motion.
     traction_direction : ndarray, shape (n, gdim)
-        Traction direction ``n + mu e``: the traction on body 1 is ``-p (n + mu e)``.
+        Traction direction ``n + mu e``: the traction on the first body is ``-p (n + mu e)``.
     speed : ndarray, shape (n,)
         Sliding speed at the contact points [m/s].
     dead_load : ndarray or None, shape (n_owned,)
-        Nodal forces of the surface loads [N].
+        Nodal forces of the surface loads and of fluids between the faces [N].
     thermal : ThermalSystem or None
     choice : SolverChoice
         Solver of the bodies.
@@ -77,7 +81,7 @@ class System:
 
     model: Model
     bodies: Bodies
-    pairing: Pairing
+    contacts: Contacts
     elastic: Elasticity
     trace: sp.csr_matrix
     basis: np.ndarray
@@ -102,76 +106,109 @@ class System:
         """Range of x that the bodies are meshed for; None where the mesh has no zone [m]."""
         return self.inputs.mesh[-1]
 
+    @property
+    def pairing(self) -> Pairing:
+        """Contact points of the only interface, with its faces; see `Contacts.only`."""
+        return self.contacts.only
+
+    @property
+    def ranges_by_name(self) -> dict[str, slice]:
+        """Ranges of the contact points by the names of the interfaces; empty for a pair."""
+        names = [] if self.model.is_pair else [one.name for one in self.model.interfaces]
+        return dict(zip(names, self.contacts.ranges, strict=False))
+
     @cached_property
     def weights(self) -> np.ndarray:
-        return self.pairing.weights
+        return self.contacts.weights
 
     @cached_property
     def gap(self) -> np.ndarray:
         """Gap of the unworn bodies under the dead load alone at the points, shape (n,) [m]."""
         if self.dead_load is None:
-            return self.pairing.gap
+            return self.contacts.gap
         opened = self.trace.T @ self.elastic.solve(self.dead_load)
-        return self.pairing.gap + sum_over_ranks(self.comm, opened)
+        return self.contacts.gap + sum_over_ranks(self.comm, opened)
 
     def dead_resultant(self, motion: RigidMotion) -> np.ndarray:
-        """Generalised forces of the dead load on a motion of each body, shape (2,) [N or N m]."""
-        return dead_resultant(self.elastic, self.model.bodies[0].parts, self.dead_load, motion)
+        """Generalised forces of the dead load on a motion of each body, (n_bodies,) [N or N m]."""
+        return dead_resultant(self.elastic, self.model.bodies, self.dead_load, motion)
 
     @cached_property
-    def facing(self) -> Facing:
-        """Parts in contact at the contact points."""
-        return facing_parts(self.bodies, self.pairing)
+    def facing(self) -> tuple[Facing, ...]:
+        """Parts in contact at the contact points of each interface."""
+        return tuple(facing_parts(self.bodies, pairing) for pairing in self.contacts.each)
 
     @cached_property
-    def load_direction(self) -> np.ndarray:
-        """Load direction of body 1, a unit vector of shape (gdim,)."""
-        return np.array(self.model.holder.load_direction)
+    def load_directions(self) -> np.ndarray:
+        """Load direction of the first body at each point, unit vectors of shape (n, gdim)."""
+        return load_directions(self.model, self.contacts)
+
+    @cached_property
+    def force_per_pressure(self) -> np.ndarray:
+        """Normal force along the load direction per pressure at the points, shape (n,) [m²]."""
+        along = np.einsum("ni,ni->n", self.traction_direction, self.load_directions)
+        return self.weights * along
+
+    @cached_property
+    def modes_of_holders(self) -> tuple[slice, ...]:
+        """Range of the rigid modes of each holder."""
+        ends = np.cumsum([0, *(len(holder.free) for holder in self.model.holders)])
+        return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
+
+    def motions(self, amounts: np.ndarray) -> tuple[RigidMotion, ...]:
+        """Motion of each holder by the amounts of all rigid modes, shape (n_modes,)."""
+        modes = self.holder.motions
+        return tuple(combined(modes[own], amounts[own]) for own in self.modes_of_holders)
+
+    def closed_by(self, motions: Sequence[RigidMotion]) -> np.ndarray:
+        """Gap closed by motions of the holders, shape (n,) [m]."""
+        pairs = zip(self.model.holders, motions, strict=True)
+        modes = [RigidMode(motion, amplitude=1.0, bodies=holder.bodies) for holder, motion in pairs]
+        return hold(self.contacts, self.contacts.normals, modes).closure.sum(axis=1)
 
     @cached_property
     def approaches(self) -> np.ndarray:
-        """Displacement of the pivot along the load direction per mode of the holder, (n_modes,)."""
-        pivot = np.array(self.model.holder.pivot)
-        return np.array([motion.at(pivot) @ self.load_direction for motion in self.holder.motions])
-
-    def normal_force(self, pressure: np.ndarray) -> float:
-        """Resultant of a pressure (n,) and its friction along the load direction [N]."""
-        return float(self.weights @ (pressure * (self.traction_direction @ self.load_direction)))
+        """Displacement of the pivot of the first holder along its load per mode, (n_modes,)."""
+        return approaches(self.model.holders[0], self.holder.motions)
 
     @cached_property
-    def softness(self) -> float:
-        """Compliance of the layer between the faces [m/Pa]."""
-        return self.model.interface.compliance
+    def mean_pressure(self) -> float:
+        """Pressure of the order of those in contact, as a first guess [Pa]."""
+        force, area = sum(h.force or 0.0 for h in self.model.holders), float(self.weights.sum())
+        return (force or area) / area
 
     @cached_property
-    def friction(self) -> float:
-        return self.model.interface.nominal_friction
+    def softness(self) -> np.ndarray:
+        """Compliance of the layer between the faces, shape (n,) [m/Pa]."""
+        return self.contacts.per_point([one.compliance for one in self.model.interfaces])
+
+    @cached_property
+    def friction(self) -> np.ndarray:
+        """Nominal coefficient of friction at the points, shape (n,)."""
+        return self.contacts.per_point([one.nominal_friction for one in self.model.interfaces])
+
+    @cached_property
+    def _wear(self) -> JointWear:
+        return JointWear(self.model, self.contacts)
 
     @cached_property
     def laws(self) -> dict[int, Law]:
-        """Wear laws by index of the body (0 is body 1); bodies that do not wear are left out."""
-        return {
-            index: wear.law_at(self.pairing.groups[index])
-            for index, wear in self.model.interface.wear.items()
-        }
+        """Wear laws of the first (0) and of the second faces; faces without wear are left out."""
+        return self._wear.laws
 
     @cached_property
     def spreads(self) -> dict[int, Distribution]:
-        """Distribution of the wear of each wearing body, by its index."""
-        at = self.pairing.points, self.weights, self.model.thickness or 1.0
-        return {index: wear.distribution(*at) for index, wear in self.model.interface.wear.items()}
+        """Distribution of the wear of these faces, likewise."""
+        return self._wear.spreads
 
     @cached_property
     def coverage(self) -> np.ndarray:
-        """Fraction of the worn area of each body that is in contact at a time, shape (2, n)."""
-        result = np.ones((2, len(self.weights)))
-        for index, spread in self.spreads.items():
-            result[index] = spread.coverage
-        return result
+        """Fraction of the worn area of each face that is in contact at a time, shape (2, n)."""
+        return self._wear.coverage
 
     @cached_property
     def lost(self) -> np.ndarray:
-        """Volumes already removed from the meshes of both bodies, shape (2,) [m³]."""
+        """Volumes already removed from the meshes of both bodies of a pair, shape (2,) [m³]."""
         return np.zeros(2) if self.worn is None else self.worn.lost
 
     @cached_property
@@ -192,7 +229,7 @@ class System:
         return self.parts.get("influence", self.inputs.elasticity, self._influence)
 
     def _influence(self) -> Influence:
-        bodies = self.elastic, self.pairing, self.trace, self.basis
+        bodies = self.elastic, self.weights, self.trace, self.basis
         if self.thermal is None:
             return influence(*bodies)
         loads = self.thermal.load_matrices
@@ -200,7 +237,7 @@ class System:
             return influence(*bodies, loads)
         rows = DistortionRows(*self.thermal.condensed, self.basis.shape[1])
         found = influence(*bodies, loads, rows)
-        self.parts.get("distortion", self.inputs.conduction, lambda: rows.distortion)
+        self.parts.get("distortion", self.inputs.conduction, rows.finish)
         return found
 
     @cached_property
@@ -226,24 +263,28 @@ class System:
         with self.phases("condense elasticity"):
             return self.influence.condensed(self.traction, self.holder)
 
+    def worn_through(self) -> System:
+        """System of faces that have lost all their layers."""
+        return replace(self, model=self.model.worn_through) if self.model.coated else self
+
     def with_friction(self, friction: np.ndarray) -> System:
         """System with given coefficients of friction (n,) in place of the nominal one."""
         if self.slides is None or np.all(friction == self.friction):
             return self
-        transverse = self.model.interface.transverse_friction
+        transverse = [one.transverse_friction for one in self.model.interfaces]
         traction_direction = self.slides.traction_direction(
-            self.pairing.normals, friction[:, None], transverse
+            self.contacts.normals, friction[:, None], self.contacts.per_point(transverse)[:, None]
         )
         return replace(
             self,
-            holder=hold(self.pairing, traction_direction, self.holder.rigid_modes),
+            holder=hold(self.contacts, traction_direction, self.holder.rigid_modes),
             traction_direction=traction_direction,
         )
 
     @cached_property
     def traction(self) -> sp.csr_matrix:
         """B_tᵀ, shape (n_owned, n), see `contact.search.pairing`; Bᵀ without in-plane friction."""
-        if np.array_equal(self.traction_direction, self.pairing.normals):
+        if np.array_equal(self.traction_direction, self.contacts.normals):
             return self.trace
         along = self.parts.get("traces", self.inputs.elasticity, self._along_coordinates)
         first, *others = (
@@ -256,4 +297,4 @@ class System:
         """Traces of the displacement along each coordinate, shape (n_owned, n) each."""
         n, gdim = self.traction_direction.shape
         units = (np.tile(unit, (n, 1)) for unit in np.eye(gdim))
-        return [vector_trace(self.elastic.spaces, self.pairing, unit) for unit in units]
+        return [vector_trace(self.elastic.spaces, self.contacts, unit) for unit in units]

@@ -1,17 +1,16 @@
-"""Heat conduction in the bodies of a model, its thermal loads, and heat exchange at the contact."""
+"""Heat conduction in the bodies of a model, and heat exchange at its interfaces."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...bulk.bodies import Bodies
-from ...bulk.compiled import surface_area
 from ...bulk.heat.advection import Passage
 from ...bulk.heat.conduction import Conduction
-from ...bulk.heat.heat_equation import ThermalMaterial, conduction, given_rises, surface_heat
+from ...bulk.heat.heat_equation import ThermalMaterial, conduction
 from ...bulk.heat.varying import (
     VaryingConduction,
     VaryingExpansion,
@@ -19,7 +18,6 @@ from ...bulk.heat.varying import (
     varying_conduction,
     varying_expansion,
 )
-from ...bulk.kinematics import Kinematics
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.mechanics.thermal_forces import ThermalForces
 from ...bulk.solver_choice import SolverChoice
@@ -28,86 +26,25 @@ from ...contact.operators.condensation import bath_matrix, condense_heat
 from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.operators.face_nodes import FaceNodes
 from ...contact.operators.heat_exchange import FaceHeat, InterfaceHeat
-from ...contact.operators.traces import value_trace
+from ...contact.operators.pressure import Basis, functions_by_interface
+from ...contact.operators.traces import face_traces
+from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import Pairing
-from ...laws.time_course import TimeFunction
-from ...model.conditions import Heat
+from ...contact.ties.joints import thermal_joints
+from ...errors import CaseError
+from ...model.conditions import Heat, Motion
 from ...model.model import Model
 from ...timer import Phases
+from .contact_points import facing_parts
+from .thermal_loads import ThermalLoads, temperature_at, thermal_loads
 
 _MOST_CONDENSED = 4000
 """Largest number of contact points for which conduction is condensed for a single solution."""
 
 
 @dataclass(frozen=True)
-class ThermalLoad:
-    """Thermal loads at one time.
-
-    Attributes
-    ----------
-    heat : ndarray, shape (n_owned,)
-        Nodal heat: prescribed, and from surroundings at other than the ambient temperature of the
-        model [W].
-    prescribed : float
-        Heat into the bodies through surfaces with a given flux or power [W].
-    magnitude : float
-        Sum of the magnitudes of that heat [W].
-    ambient : float
-        Rise of the surroundings over the ambient temperature of the model [K].
-    given : ndarray or None, shape (n_owned,)
-        Prescribed rises at the fixed nodes, zero elsewhere; None: those of the conduction [K].
-    """
-
-    heat: np.ndarray
-    prescribed: float
-    magnitude: float
-    ambient: float = 0.0
-    given: np.ndarray | None = None
-
-
-@dataclass(frozen=True)
-class ThermalLoads:
-    """Thermal loads beside friction as functions of time.
-
-    Attributes
-    ----------
-    base : ThermalLoad
-        Loads constant in time.
-    reference : float
-        Ambient temperature of the model [K].
-    given : dict of str to (TimeFunction or float, ndarray)
-        Prescribed temperatures by surface, with the nodal rises (n_owned,) per unit rise of it;
-        empty if all are constant.
-    surroundings : tuple or None
-        Temperature history of the surroundings, and nodal heat (n_owned,) per rise of it [W/K].
-    """
-
-    base: ThermalLoad
-    reference: float
-    given: dict[str, tuple[TimeFunction | float, np.ndarray]]
-    surroundings: tuple[TimeFunction, np.ndarray] | None
-
-    @cached_property
-    def constant(self) -> ThermalLoad | None:
-        """Loads at all times; None if they change."""
-        return None if self.given or self.surroundings is not None else self.base
-
-    def at(self, time: float) -> ThermalLoad:
-        """Thermal loads at a time [s]."""
-        load = self.base
-        if self.surroundings is not None:
-            history, per_rise = self.surroundings
-            above = history.at(time) - self.reference
-            load = replace(load, heat=load.heat + above * per_rise, ambient=above)
-        if self.given:
-            rises = ((temperature_at(T, time) - self.reference) * n for T, n in self.given.values())
-            load = replace(load, given=sum(rises, np.zeros(len(load.heat))))
-        return load
-
-
-@dataclass(frozen=True)
 class ThermalSystem:
-    """Conducting bodies, their thermal loads and the heat exchange at the interface.
+    """Conducting bodies, their thermal loads and the heat exchange at the interfaces.
 
     Attributes
     ----------
@@ -148,8 +85,8 @@ class ThermalSystem:
         return [self.load, *(expansion.matrix for expansion in self.expansions)]
 
     @property
-    def condensed(self) -> tuple[Conduction, tuple[FaceNodes, FaceNodes]]:
-        """Conduction, and the nodes of the faces to which it is condensed."""
+    def condensed(self) -> tuple[Conduction, tuple[FaceNodes, ...]]:
+        """Conduction, and the nodes of the faces of each body to which it is condensed."""
         assert isinstance(self.face, InterfaceHeat)
         return self.conduction, self.face.nodes
 
@@ -161,10 +98,11 @@ class ThermalSystem:
 def thermal_system(
     model: Model,
     heat: Heat,
-    pairing: Pairing,
+    contacts: Contacts,
+    glued: Sequence[Pairing],
     elastic: Elasticity,
-    basis: np.ndarray,
-    partition: float | np.ndarray,
+    basis: Basis,
+    partition: np.ndarray,
     phases: Phases,
     choice: SolverChoice,
 ) -> ThermalSystem:
@@ -172,16 +110,18 @@ def thermal_system(
     bodies, kinematics = elastic.bodies, elastic.kinematics
     with phases("assemble conduction"):
         spaces = lagrange_spaces(bodies, model.discretisation.degree)
-        upper, lower = pairing.sides
-        traces = (value_trace(spaces, upper), value_trace(spaces, lower))
+        traces = face_traces(spaces, contacts)
         materials = conducting_parts(model)
-        first, second = _conductivities(model, heat, materials)
-        shifts = first / pairing.extent, second / pairing.extent
+        shifts = _shifts(model, heat, contacts, materials)
         given = {
             name: temperature_at(value, 0.0) - heat.ambient
             for name, value in heat.temperature.items()
         }
-        bath = bath_matrix(spaces, traces, pairing.weights, shifts)
+        conductances = [
+            np.inf if tie.conductance is None else tie.conductance * model.ring(tie.faces[0])
+            for tie in model.ties
+        ]
+        bath = bath_matrix(spaces, traces, contacts.weights, shifts)
         conducting = conduction(
             bodies,
             kinematics,
@@ -192,13 +132,16 @@ def thermal_system(
             bath,
             _passage(model, heat),
             choice,
+            joints=thermal_joints(spaces, glued, conductances),
         )
         load = elastic.thermal_load(spaces)
         loads = thermal_loads(model, heat, bodies, kinematics, conducting)
         conducting, expansions = _varying(model, heat, conducting, elastic, materials)
     face: InterfaceHeat | CoupledHeat
-    at_points = pairing.weights, basis, traces, shifts, partition
-    if coupled_without_condensation(choice, len(pairing.weights)):
+    functions = functions_by_interface(contacts, basis)
+    layers = shifts[0] * functions, shifts[1] * functions
+    at_points = contacts.weights, basis, traces, shifts, layers, partition
+    if coupled_without_condensation(choice, len(contacts.weights)):
         face = CoupledHeat(*at_points, conducting)
     else:
         face = condense_heat(conducting, FaceHeat(*at_points))
@@ -207,6 +150,35 @@ def thermal_system(
     return ThermalSystem(
         conducting, load, loads, face, heat.ambient, initial, diffusivity, expansions
     )
+
+
+def heat_partition(model: Model, bodies: Bodies, contacts: Contacts) -> np.ndarray:
+    """Fraction of the friction heat released into the first body, shape (n,). Every rank calls."""
+    result = np.empty(len(contacts.weights))
+    for interface, (pairing, points) in zip(model.interfaces, contacts, strict=True):
+        facing = facing_parts(bodies, pairing)
+        result[points] = interface.heat_partition(facing, model.materials)
+    return result
+
+
+def _shifts(
+    model: Model, heat: Heat, contacts: Contacts, materials: dict[str, ThermalMaterial]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Heat transfer of both faces to the bath at the points, shape (n,) each [W/(m² K)].
+
+    Conductivity of the body over the size of the face.
+    """
+    conductivities = _conductivities(model, heat, materials)
+    first, second = (
+        contacts.per_point(
+            [
+                conductivities[pair[side]] / pairing.extent
+                for pairing, pair in zip(contacts.each, contacts.bodies, strict=True)
+            ]
+        )
+        for side in (0, 1)
+    )
+    return first, second
 
 
 def coupled_without_condensation(choice: SolverChoice, points: int) -> bool:
@@ -249,13 +221,37 @@ def _conductivities(model: Model, heat: Heat, materials: dict[str, ThermalMateri
 
 
 def _passage(model: Model, heat: Heat) -> Passage | None:
-    """Motion of body 2 past body 1 for advection; None where conduction neglects it."""
-    motion = model.motion
-    if heat.advection == "none" or motion.at_rest:
+    """Motion of the body that passes the others, for advection; None where conduction neglects it.
+
+    Raises
+    ------
+    CaseError
+        If there are several such bodies, or others are glued to it.
+    """
+    found = {
+        (interface.bodies[1], interface.motion.center, _passing_speed(interface.motion))
+        for interface in model.interfaces
+        if not interface.motion.at_rest
+    }
+    if heat.advection == "none" or not found:
         return None
-    # body 1 over body 2 along x, or body 2 about a centre
-    speed = -(motion.velocity or 0.0) if motion.center is None else motion.angular_velocity or 0.0
-    return Passage(model.bodies[1].parts, motion.center, speed, spread=heat.advection == "spread")
+    if len(found) > 1:
+        raise CaseError(
+            "heat.advection: several bodies pass others; heat can be carried along by one only"
+        )
+    ((body, center, speed),) = found
+    glued = [k for group in model.groups if body in group for k in group if k != body]
+    if glued:
+        raise CaseError(
+            f"heat.advection: {model.bodies[glued[0]].name} is glued to {model.bodies[body].name}, "
+            'which passes others; heat can be carried along by one body only; use "none"'
+        )
+    return Passage(model.bodies[body].parts, center, speed, spread=heat.advection == "spread")
+
+
+def _passing_speed(motion: Motion) -> float:
+    """Velocity of body 2 under body 1 [m/s], or its angular velocity about a centre [rad/s]."""
+    return -(motion.velocity or 0.0) if motion.center is None else motion.angular_velocity or 0.0
 
 
 def conducting_parts(model: Model) -> dict[str, ThermalMaterial]:
@@ -272,29 +268,3 @@ def conducting_parts(model: Model) -> dict[str, ThermalMaterial]:
 def cooling(model: Model, heat: Heat) -> dict[str, float]:
     """Heat transfer coefficients by surface, of whole rings likewise [W/(m² K)]."""
     return {surface: model.ring(surface) * h for surface, h in heat.cooling.items()}
-
-
-def temperature_at(given: TimeFunction | float, time: float) -> float:
-    """Prescribed temperature [K] at a time [s]."""
-    return given.at(time) if isinstance(given, TimeFunction) else given
-
-
-def thermal_loads(
-    model: Model, heat: Heat, bodies: Bodies, kinematics: Kinematics, conduction: Conduction
-) -> ThermalLoads:
-    """Assemble the thermal loads of a model with heat. Every rank calls."""
-    spaces = conduction.spaces
-    total = np.zeros(len(conduction.fixed))
-    areas = {s: surface_area(bodies, kinematics, s) for s in (*heat.flux, *heat.power)}
-    powers = {s: q * model.ring(s) * areas[s] for s, q in heat.flux.items()} | dict(heat.power)
-    for surface, power in powers.items():
-        total += surface_heat(bodies, kinematics, spaces, surface, power / areas[surface])
-    given, surroundings = {}, None
-    if any(isinstance(T, TimeFunction) for T in heat.temperature.values()):
-        for surface, T in heat.temperature.items():
-            unit = {name: float(name == surface) for name in heat.temperature}
-            given[surface] = T, given_rises(bodies, spaces, unit, conduction.even)[1]
-    if heat.ambient_history is not None:
-        surroundings = heat.ambient_history, conduction.per_ambient()
-    constant = ThermalLoad(total, sum(powers.values()), sum(map(abs, powers.values())))
-    return ThermalLoads(constant, heat.ambient, given, surroundings)

@@ -18,9 +18,9 @@ from ....case.tables.plane_geometry import PlaneGeometry
 from ....case.values.section import KeyFault
 from ....case.values.units import Angle, Length
 from ...meshing.cells import ORDER, Claim, Sheet, every, grid, level, mesh_body, tagged_bodies
-from ...meshing.polar import Division, Polar, complete
+from ...meshing.polar import Division, complete
+from .shoe import ORIGIN, check_order, degrees
 
-ORIGIN = Polar()
 _STEEPEST = math.radians(80.0)
 """Largest angle of the arc of a block: at least 10 degrees with its vertical side."""
 
@@ -49,11 +49,7 @@ class ArcContact(PlaneGeometry):
 
     @model_validator(mode="after")
     def _ordered(self):
-        if not self.arc_start < self.arc_end:
-            raise KeyFault(
-                "arc_end",
-                f"{degrees(self.arc_end)} must be greater than arc_start {degrees(self.arc_start)}",
-            )
+        check_order(self.arc)
         return self
 
     def check_arc(self, limit: float) -> None:
@@ -135,10 +131,6 @@ class ArcContact(PlaneGeometry):
             self.rest: ORIGIN.circle(self.radius),
             self.fixed: ORIGIN.circle(self.far_radius),
         }
-
-
-def degrees(angle: float) -> str:
-    return f"{math.degrees(angle):g} deg"
 
 
 class BlockOnDisk(ArcContact):

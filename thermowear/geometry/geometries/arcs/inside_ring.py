@@ -7,23 +7,18 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
-from dataclasses import replace
 from typing import Literal
 
-import numpy as np
 from pydantic import model_validator
 
 from ....case.tables.geometry import keyed
-from ....case.values.section import KeyFault
 from ....case.values.units import Coordinate, Length
 from ...meshing.cells import Sheet
 from ...meshing.polar import Division
-from .arc_contact import ORIGIN, ArcContact, degrees
+from .arc_contact import ArcContact
+from .shoe import ORIGIN, Shoe, layered_sheets
 
 _STEEPEST = math.radians(85.0)
-_LONGEST = math.radians(170.0)
-_ON_THE_LINE = 1e-9
-"""Moment arm, relative to the pivot's distance, that is zero up to rounding."""
 
 
 class InsideRing(ArcContact):
@@ -39,9 +34,7 @@ class InsideRing(ArcContact):
         return self.radius - sum(self.layers)
 
     def upper_sheets(self, division: Division) -> list[Sheet]:
-        length = self.radius * float(np.ptp(self.arc))
-        layers = division.layered(self.layers, length)
-        return [ORIGIN.sheet(division.angles, self.radius - depths) for depths in layers]
+        return layered_sheets(division, self.radius, self.arc, self.layers)
 
     def on_holder(self):
         return ORIGIN.circle(self.held_radius)
@@ -116,46 +109,12 @@ class DrumBrake(InsideRing):
 
     @model_validator(mode="after")
     def _fits(self):
-        if not self.arc_end - self.arc_start <= _LONGEST:
-            raise KeyFault(
-                "arc_end",
-                f"the lining covers {degrees(self.arc_end - self.arc_start)} of the drum; must be "
-                f"at most {degrees(_LONGEST)}",
-            )
-        if not self.held_radius > 0:
-            raise KeyFault(
-                "shoe_thickness",
-                f"{self.shoe_thickness:g} m and the lining must be thinner together than "
-                f"drum_radius {self.drum_radius:g} m",
-            )
-        self._check_pivot()
+        self.shoe.check()
         return self
 
-    def _check_pivot(self) -> None:
-        if not math.hypot(*self.pivot) < self.drum_radius:
-            raise KeyFault(
-                "pivot",
-                f"lies {math.hypot(*self.pivot):g} m from the centre; must be less than "
-                f"drum_radius {self.drum_radius:g} m",
-            )
-        ends = [self.normal_arm(angle) for angle in self.arc]
-        rounding = _ON_THE_LINE * math.hypot(*self.pivot)
-        outwards = min(ends) >= -rounding and max(ends) > rounding
-        inwards = max(ends) <= rounding and min(ends) < -rounding
-        if not outwards and not inwards:
-            raise KeyFault(
-                "pivot",
-                f"lies at {degrees(math.atan2(*self.pivot))} clockwise from 12 o'clock (+y); must "
-                f"lie neither within the lining, {degrees(self.arc_start)} to "
-                f"{degrees(self.arc_end)}, nor opposite to it, except at its ends: a "
-                "rotation would "
-                "press one part of the shoe and lift the other",
-            )
-
-    def normal_arm(self, angle: float) -> float:
-        """Outward motion of the shoe's face per anticlockwise rotation about the pivot [m/rad]."""
-        x, y = self.pivot
-        return y * math.sin(angle) - x * math.cos(angle)
+    @property
+    def shoe(self) -> Shoe:
+        return Shoe(self.drum_radius, self.arc, self.layers, self.pivot)
 
     @keyed
     def pivot_point(self) -> tuple[float, float]:
@@ -164,17 +123,15 @@ class DrumBrake(InsideRing):
     @keyed
     def press_direction(self) -> tuple[float, float]:
         """Outward direction at the middle of the lining."""
-        middle = (self.arc_start + self.arc_end) / 2
-        return math.sin(middle), math.cos(middle)
+        return self.shoe.outward
 
     @property
     def far_radius(self) -> float:
         return self.drum_radius + self.drum_thickness
 
     @property
-    def layers(self) -> tuple[float, ...]:
+    def layers(self) -> tuple[float, float]:
         return self.lining_thickness, self.shoe_thickness
 
     def upper_sheets(self, division: Division) -> list[Sheet]:
-        lining, shoe = super().upper_sheets(division)
-        return [replace(lining, zone="lining"), shoe]
+        return self.shoe.sheets(division, "lining")

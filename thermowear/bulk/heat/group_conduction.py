@@ -1,4 +1,4 @@
-"""Heat conduction in one body, for many columns of heat."""
+"""Heat conduction in one body, or in glued ones, for many columns of heat."""
 
 from __future__ import annotations
 
@@ -7,31 +7,30 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from ..body_solvers import SolverInBody
-from ..direct_solver import DirectSolver
 from ..field import without_fixed
+from ..group_solvers import AnyFactor, SolverInGroup
 
 
 @dataclass(frozen=True)
-class BodyConduction:
-    """Conduction in one body; it does not depend on the heat in the others.
+class GroupConduction:
+    """Conduction in a group of bodies; it does not depend on the heat in the others.
 
     Attributes
     ----------
-    solver : DirectSolver or SolverInBody
+    solver : DirectSolver, JoinedSolver or SolverInGroup
         Solver of conductivity plus bath, with prescribed temperatures eliminated.
     fixed : ndarray of bool, shape (n_own,)
-        Mask of prescribed temperatures, rows of the body owned by this rank.
+        Mask of prescribed temperatures, rows of the group owned by this rank.
     symmetric : bool
         True if its matrix is symmetric.
     """
 
-    solver: DirectSolver | SolverInBody
+    solver: AnyFactor | SolverInGroup
     fixed: np.ndarray
     symmetric: bool
 
     def respond(self, heat: np.ndarray | sp.csr_matrix) -> np.ndarray:
-        """Rise [K] due to nodal heat [W] in the body alone, see `Conduction.respond`."""
+        """Rise [K] due to nodal heat [W] in the group alone, see `Conduction.respond`."""
         return self.solver.solve(without_fixed(heat, self.fixed))
 
     def adjoint_response(self, weights: np.ndarray) -> np.ndarray:

@@ -1,0 +1,1 @@
+"""Cases of more than two bodies: geometries, tables, schema and checks."""

@@ -1,0 +1,105 @@
+"""Case of more than two bodies: its tables, and the contacts that they describe."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from ...errors import CaseError
+from ..tables.analyses import Initial, Steady, Transient
+from ..tables.conditions import HeatTable
+from ..tables.contact import InterfaceTable
+from ..tables.materials import Properties, cell_sets, located_material
+from ..tables.schema import MeshTable, check_size
+from ..tables.wear import WearTable
+from ..values.section import Section
+from .geometry import AnyAssembly
+from .tables import (
+    AssemblyBodyTable,
+    AssemblyContactTable,
+    AssemblyHolderTable,
+    BodyMotionTable,
+    SurfaceLoadTable,
+)
+
+
+class AssemblyCase(Section):
+    """Complete case of several bodies.
+
+    Attributes
+    ----------
+    contact : InterfaceTable
+        Values that the contacts share; those of `conductance`, `gap_conductance` and `partition`
+        are in ``heat``.
+    contacts : dict of str to AssemblyContactTable
+        By default those of the geometry; complete once the case has been read.
+    """
+
+    title: str = ""
+    model: Literal["axisymmetric", "plane-strain", "plane-stress", "3d"]
+    geometry: AnyAssembly
+    mesh: MeshTable = MeshTable()
+    bodies: dict[str, AssemblyBodyTable]
+    contact: InterfaceTable = InterfaceTable()
+    contacts: dict[str, AssemblyContactTable] = {}
+    holders: dict[str, AssemblyHolderTable]
+    load: SurfaceLoadTable = SurfaceLoadTable()
+    motions: dict[str, BodyMotionTable] = {}
+    wear: WearTable = WearTable()
+    heat: HeatTable | None = None
+    analysis: Annotated[Initial | Steady | Transient, Field(discriminator="type")]
+
+    @model_validator(mode="after")
+    def _cell_sets_as_parts(self):
+        sets = cell_sets(self.bodies, self.wear)
+        if sets:
+            object.__setattr__(self, "geometry", self.geometry.with_cell_sets(sets))
+        return self
+
+    @model_validator(mode="after")
+    def _all_contacts(self):
+        """Contacts of the geometry by default, each with the values that all of them share."""
+        given = self.contacts or {name: AssemblyContactTable() for name in self.geometry.contacts}
+        found = {name: self._complete(name, table) for name, table in given.items()}
+        object.__setattr__(self, "contacts", found)
+        return self
+
+    def _complete(self, name: str, table: AssemblyContactTable) -> AssemblyContactTable:
+        shared: dict[str, Any] = {}
+        if not table.tie:
+            shared = {key: getattr(self.contact, key) for key in _set(self.contact)}
+        if self.heat is not None and not table.tie:
+            thermal = _set(self.heat) & {"conductance", "gap_conductance", "partition"}
+            shared |= {key: getattr(self.heat, key) for key in thermal}
+        own = {key: getattr(table, key) for key in _set(table)}
+        between = {"between": table.between or self.geometry.contacts.get(name)}
+        return AssemblyContactTable.model_construct(**(shared | own | between))
+
+    def located_material(self, part: str) -> tuple[str, Properties]:
+        """Path of the table that defines the material of a part, and this material."""
+        return located_material(self.geometry, self.bodies, part)
+
+    @property
+    def cycles(self) -> None:
+        """No analysis of several bodies has cycles."""
+
+    def tagged_mesh(self):
+        """Mesh of the case.
+
+        Raises
+        ------
+        CaseError
+            If it has too many nodes, or nodes beyond the axis.
+        """
+        mesh = self.geometry.build(self.mesh)
+        check_size(mesh, self.mesh.degree)
+        x = mesh.points[:, 0]
+        if self.model == "axisymmetric" and x.min() < -1e-9 * x.max():
+            raise CaseError("geometry: x is the radius of an axisymmetric mesh, found x < 0")
+        self.geometry.check(mesh, self)
+        return mesh
+
+
+def _set(table: Section) -> set[str]:
+    return set(table.model_fields_set)

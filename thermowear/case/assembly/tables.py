@@ -1,0 +1,183 @@
+"""Tables of the contacts, holders, motions and bodies of an assembly."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from ..tables.conditions import FreeMotion
+from ..tables.contact import InterfaceTable
+from ..tables.laws import Conductance
+from ..tables.materials import BodyTable
+from ..tables.tabulated import FactorHistory, History
+from ..values import units
+from ..values.section import KeyFault, Number, Section, Switch, number_or
+
+_PARTITION = number_or(
+    "effusivity",
+    None,
+    where=lambda share: 0 <= share <= 1,
+    allowed='at least 0 and at most 1, or "effusivity"',
+)
+
+
+_OF_SLIDING = (
+    "friction",
+    "friction_factor",
+    "friction_history",
+    "partition",
+    "compliance",
+    "fluid_pressure",
+)
+"""Keys without a meaning for glued faces."""
+
+
+def _names(value):
+    """List of names from one name."""
+    return (value,) if isinstance(value, str) else value
+
+
+Names = Annotated[tuple[str, ...], BeforeValidator(_names)]
+
+
+SUPPORTS = ("fixed", "symmetry", "rollers", "mid_plane")
+"""Keys of surfaces of a body that are held."""
+
+
+class AssemblyContactTable(InterfaceTable):
+    """Table ``contacts.NAME``; keys that are left out have the values of ``contact`` and ``heat``.
+
+    Attributes
+    ----------
+    between : tuple of str or None
+        Both contact faces, that of body 1 first; by default those of this name in the geometry.
+    conductance, gap_conductance, partition
+        See `model.interface.Interface`; the partition is the fraction into body 1.
+    tie : bool
+        Glued faces, without friction, heat or wear.
+    """
+
+    between: tuple[str, str] | None = None
+    conductance: Conductance | None = None
+    gap_conductance: units.HeatTransfer | None = None
+    partition: Annotated[float | Literal["effusivity"] | None, _PARTITION] = None
+    tie: Switch = False
+
+    @model_validator(mode="after")
+    def _nothing_slides(self):
+        for key in _OF_SLIDING if self.tie else ():
+            if getattr(self, key) != type(self).model_fields[key].default:
+                raise KeyFault(key, "not allowed together with tie")
+        return self
+
+
+class AssemblyHolderTable(Section):
+    """Table ``holders.NAME``: a rigid holder with its loads, see `model.conditions.Holder`.
+
+    Attributes
+    ----------
+    surface : tuple of str
+        Surface, or list of surfaces of several bodies that move as one.
+    direction : tuple of float or None
+        Load direction, the motion ``"z"``, by default into the body in a stack, else downwards.
+    point, pivot : tuple of float or None
+        Point of application of the force, by default the pivot, and centre of rotations, by default
+        that of the geometry, else the origin [m].
+    moments : tuple of float or None
+        Moments about x, y and z through the pivot; in a section the last one counts [N m].
+    closing_moment : float or None
+        Moment about the pivot, positive where it closes the contacts of the holder, for one that
+        can only rotate in the section; instead of other loads [N m].
+    """
+
+    surface: Names
+    free: tuple[FreeMotion, ...] = ("z",)
+    direction: tuple[Number, ...] | None = None
+    force: units.LeastForce | None = None
+    approach: units.Length | None = None
+    tangential_force: units.SignedForce | None = None
+    moments: tuple[units.SignedMoment, units.SignedMoment, units.SignedMoment] | None = None
+    closing_moment: units.SignedMoment | None = None
+    point: tuple[units.Coordinate, ...] | None = None
+    pivot: tuple[units.Coordinate, ...] | None = None
+    history: History | None = None
+
+    @model_validator(mode="after")
+    def _loads(self):
+        if len(set(self.free)) != len(self.free):
+            raise KeyFault("free", "names a motion twice")
+        if self.force is not None and self.approach is not None:
+            raise KeyFault("approach", "only one of force and approach can be given")
+        if self.approach is not None and "z" not in self.free:
+            raise KeyFault("approach", 'needs the motion "z" in free')
+        loads = self.force, self.tangential_force, self.moments, self.history
+        if self.closing_moment is not None:
+            if self.free != ("rotation",):
+                raise KeyFault("closing_moment", 'needs free = ["rotation"]')
+            if any(load is not None for load in loads):
+                raise KeyFault("closing_moment", "cannot be given together with other loads")
+        if not self.free and any(load is not None for load in loads):
+            raise KeyFault("free", "is empty: a fixed holder takes no loads")
+        if self.direction is not None and not any(self.direction):
+            raise KeyFault("direction", "has no length")
+        return self
+
+
+class BodyMotionTable(Section):
+    """Table ``motions.NAME``: motion of a body, see `scripting.holding`.
+
+    Attributes
+    ----------
+    velocity : float or None
+        Along x, of a plane model also across the section [m/s].
+    angular_velocity : float or None
+        About the axis of an axisymmetric model; in others about `center`, anticlockwise [rad/s].
+    center : tuple of float
+        x and y of the centre, or of the axis along z [m].
+    across : bool
+        True if the velocity is normal to a plane section.
+    """
+
+    velocity: units.Velocity | None = None
+    angular_velocity: units.AngularVelocity | None = None
+    center: tuple[units.Coordinate, units.Coordinate] = (0.0, 0.0)
+    across: Switch = False
+    history: FactorHistory | None = None
+
+    @model_validator(mode="after")
+    def _one(self):
+        if (self.velocity is None) == (self.angular_velocity is None):
+            raise KeyFault("velocity", "give either velocity or angular_velocity")
+        return self
+
+
+class AssemblyBodyTable(BodyTable):
+    """Table ``bodies.NAME``: material, and supports of a body without a holder.
+
+    Attributes
+    ----------
+    fixed, symmetry, rollers, mid_plane : tuple of str
+        Surfaces that are clamped; that cannot move along x; along y; in space, along z.
+    """
+
+    fixed: Names = ()
+    symmetry: Names = ()
+    rollers: Names = ()
+    mid_plane: Names = ()
+
+    @property
+    def has_own(self) -> bool:
+        return bool(self.model_fields_set - {"materials", *SUPPORTS})
+
+
+class SurfaceLoadTable(Section):
+    """Table ``load``: loads on surfaces, constant in time.
+
+    Attributes
+    ----------
+    pressure : dict of str to float
+        Pressures on surfaces, towards the bodies [Pa].
+    """
+
+    pressure: dict[str, units.Pressure] = Field(default={})

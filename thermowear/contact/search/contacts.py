@@ -1,0 +1,119 @@
+"""Contact points of all interfaces of a model, one interface after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from ...errors import CaseError
+from .face import Surface
+from .pairing import Pairing
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Pairings of all interfaces; arrays list their points one interface after the other.
+
+    Attributes
+    ----------
+    each : tuple of Pairing
+    bodies : tuple of tuple of int
+        Indices of the first and of the second body of each interface.
+    """
+
+    each: tuple[Pairing, ...]
+    bodies: tuple[tuple[int, int], ...] = ((0, 1),)
+
+    def __iter__(self) -> Iterator[tuple[Pairing, slice]]:
+        """Pairings with the ranges of their points."""
+        return zip(self.each, self.ranges, strict=True)
+
+    @property
+    def only(self) -> Pairing:
+        """Pairing of a single interface.
+
+        Raises
+        ------
+        CaseError
+            If there are several.
+        """
+        if len(self.each) > 1:
+            raise CaseError(
+                f"the model has {len(self.each)} interfaces; what is asked for is supported for "
+                "one interface only"
+            )
+        return self.each[0]
+
+    @cached_property
+    def ranges(self) -> tuple[slice, ...]:
+        """Range of the points of each interface."""
+        counts = [len(pairing.weights) for pairing in self.each]
+        return tuple(slice(a, b) for a, b in pairwise([0, *np.cumsum(counts)]))
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Points on the common faces, shape (n, gdim) [m]."""
+        return self._joined("points")
+
+    @cached_property
+    def position(self) -> np.ndarray:
+        """Arc length along the face of the first body of the interface, shape (n,) [m]."""
+        return self._joined("position")
+
+    @cached_property
+    def weights(self) -> np.ndarray:
+        """Area at each point, shape (n,) [m²]."""
+        return self._joined("weights")
+
+    @cached_property
+    def normals(self) -> np.ndarray:
+        """Unit normals outward from the first body of the interface, shape (n, gdim)."""
+        return self._joined("normals")
+
+    @cached_property
+    def gap(self) -> np.ndarray:
+        """Gap of the unloaded, unworn bodies, shape (n,) [m]."""
+        return self._joined("gap")
+
+    @cached_property
+    def on_body_1(self) -> np.ndarray:
+        """Points on the face of the first body of the interface, shape (n, gdim) [m]."""
+        return self._joined("on_body_1")
+
+    @cached_property
+    def on_body_2(self) -> np.ndarray:
+        """Points on the face of the second body of the interface, shape (n, gdim) [m]."""
+        return self._joined("on_body_2")
+
+    @cached_property
+    def facet(self) -> np.ndarray:
+        """Facets of the first bodies, those of each interface numbered after one another, (n,)."""
+        starts = np.cumsum([0, *(len(p.sides[0].face.sizes) for p in self.each[:-1])])
+        parts = zip(starts, self.each, strict=True)
+        return _concatenated([start + p.sides[0].facet for start, p in parts])
+
+    @cached_property
+    def in_space(self) -> bool:
+        """True for bodies in space."""
+        return isinstance(self.each[0].sides[0].face, Surface)
+
+    def per_point(self, values) -> np.ndarray:
+        """Values by interface at the points, shape (n,)."""
+        counts = [len(pairing.weights) for pairing in self.each]
+        return np.repeat(np.asarray(values, dtype=float), counts)
+
+    def of_body(self, index: int) -> list[tuple[int, slice]]:
+        """Sides (0 or 1) and ranges of the points at which a body is in contact."""
+        parts = zip(self.bodies, self.ranges, strict=True)
+        return [(pair.index(index), points) for pair, points in parts if index in pair]
+
+    def _joined(self, name: str) -> np.ndarray:
+        return _concatenated([getattr(pairing, name) for pairing in self.each])
+
+
+def _concatenated(parts: list[np.ndarray]) -> np.ndarray:
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)

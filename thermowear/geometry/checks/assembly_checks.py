@@ -1,0 +1,233 @@
+"""Checks of the mesh of several bodies that was read from files.
+
+Its surfaces, supports and pieces, and the relative position of the faces of each contact, which are
+compared along the mean normal of the first one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from ...case.assembly.schema import AssemblyCase
+from ...errors import CaseError, note
+from ..mesh.mixed import AnyMesh, block_of, block_with
+from .mesh_checks import (
+    check_one_curve,
+    check_pieces,
+    check_shared_edges,
+    length,
+    points_of,
+    whole_bodies,
+)
+from .pair_checks import MUCH, SQUEEZED, facing_pieces, pieces, section_gap
+from .solid_pairs import area_vector, distances, facing_triangles, projected_area
+from .solid_surfaces import (
+    PLANES,
+    check_plane,
+    check_shared_facets,
+    check_solid_face,
+    check_solid_pieces,
+)
+
+_CLOSED = 0.05
+"""Mean normal below which a face encloses the other body, and has no side."""
+
+
+@dataclass(frozen=True)
+class _Opposite:
+    """Faces of a contact compared along the mean normal of the first one.
+
+    Smallest distance, negative where the bodies overlap [m], and its position as text; lesser area
+    of both [m²]; size along the normal [m] and name of the thinner body.
+    """
+
+    gap: float
+    where: str
+    area: float
+    height: float
+    body: str
+
+
+def check_assembly(mesh: AnyMesh, case: AssemblyCase) -> None:
+    """Check the mesh of a case of several bodies.
+
+    Raises
+    ------
+    CaseError
+        If surfaces share facets, a contact face branches, a piece of a body is not held, a support
+        does not lie in its plane, or the faces of a contact do not fit each other.
+    """
+    mesh = whole_bodies(mesh, case.geometry)
+    for block in mesh.blocks:
+        (check_shared_facets if case.model == "3d" else check_shared_edges)(block)
+    for path, face in _faces(case):
+        _check_face(mesh, case, path, face)
+    for body in case.geometry.bodies:
+        _check_body(mesh, case, body)
+    area = 0.0
+    for name in case.contacts:
+        faces = _compared(mesh, case, name)
+        if faces is None:  # no bound of the load
+            area = np.inf
+            continue
+        _check_distance(case, name, faces)
+        area += faces.area
+    _check_loads(mesh, case, area)
+
+
+def _faces(case: AssemblyCase) -> Iterator[tuple[str, str]]:
+    """All contact faces, with the paths of their keys."""
+    for name, contact in case.contacts.items():
+        for face in contact.between or ():
+            yield f"contacts.{name}.between", face
+
+
+def _check_face(mesh: AnyMesh, case: AssemblyCase, path: str, face: str) -> None:
+    block = block_with(mesh, face)
+    if case.model == "3d":
+        index = case.geometry.bodies.index(case.geometry.body_of(face))
+        check_solid_face(block, face, index, path)
+    else:
+        check_one_curve(block, face, path)
+
+
+def _check_body(mesh: AnyMesh, case: AssemblyCase, body: str) -> None:
+    """Check the supports of a body, and that each of its pieces is held or glued."""
+    table, geometry = case.bodies[body], case.geometry
+    for key, axis in PLANES.items():
+        for surface in getattr(table, key):
+            check_plane(mesh, points_of(mesh, body), f"bodies.{body}.{key}", surface, axis)
+    held = [surface for holder in case.holders.values() for surface in holder.surface]
+    glued = [s for contact in case.contacts.values() if contact.tie for s in contact.between or ()]
+    own = [s for s in (*held, *table.fixed, *glued) if geometry.body_of(s) == body]
+    own += [*table.symmetry, *table.rollers, *table.mid_plane]
+    if own:
+        check = check_solid_pieces if case.model == "3d" else check_pieces
+        check(block_of(mesh, body), body, own)
+
+
+def _compared(mesh: AnyMesh, case: AssemblyCase, name: str) -> _Opposite | None:
+    """Compare the faces of a contact; None where one encloses the other."""
+    path, faces = f"contacts.{name}.between", case.contacts[name].between
+    assert faces is not None  # the case has been checked
+    normal = _normal(mesh, case, faces[0])
+    if normal is None:
+        return None
+    first, second = (case.geometry.body_of(face) for face in faces)
+    heights = {body: float(np.ptp(points_of(mesh, body) @ normal)) for body in (first, second)}
+    body = min(heights, key=heights.__getitem__)
+    facing = facing_triangles if case.model == "3d" else facing_pieces
+    turn = _downwards(normal)
+    down, up = facing(mesh, faces, turn)
+    if not len(up):
+        raise CaseError(
+            f"{path}: {faces[1]!r} does not face {faces[0]!r}; the outward normals of faces that "
+            "touch point against each other"
+        )
+    if case.model == "3d":
+        area = min(projected_area(mesh, face, turn) for face in faces)
+        found = distances(down, up, area, path, turn)
+        return _Opposite(found.gap, f" {found.where}", area, heights[body], body)
+    gap, _ = section_gap(down, up, path)
+    area = min(_section_area(mesh, case, face) for face in faces)
+    return _Opposite(gap, "", area, heights[body], body)
+
+
+def _normal(mesh: AnyMesh, case: AssemblyCase, face: str) -> np.ndarray | None:
+    """Mean outward unit normal of a face, shape (gdim,); None if it is closed."""
+    if case.model == "3d":
+        vector, area = area_vector(mesh, face)
+    else:
+        x, y = _along(mesh, face).T
+        vector = np.array([y.sum(), -x.sum()])
+        area = float(np.hypot(x, y).sum())
+    size = float(np.linalg.norm(vector))
+    return None if size < _CLOSED * area else vector / size
+
+
+def _downwards(normal: np.ndarray) -> np.ndarray:
+    """Rotation of a unit normal to -y in a section, or to -z in space, shape (gdim, gdim)."""
+    if len(normal) == 2:
+        x, y = normal
+        return np.array([[-y, x], [-x, -y]])
+    return Rotation.align_vectors([[0.0, 0.0, -1.0]], [normal])[0].as_matrix()
+
+
+def _along(mesh: AnyMesh, face: str) -> np.ndarray:
+    """Segments of a face of a section, from end to end, shape (n, 2) [m]."""
+    ends = pieces(block_with(mesh, face), face)
+    return ends[:, 1] - ends[:, 0]
+
+
+def _section_area(mesh: AnyMesh, case: AssemblyCase, face: str) -> float:
+    """Area that a face of a section stands for [m²]."""
+    lengths = np.linalg.norm(_along(mesh, face), axis=1)
+    if case.model != "axisymmetric":
+        return float(lengths.sum()) * (case.geometry.thickness_factor or 0.0)
+    radii = pieces(block_with(mesh, face), face)[..., 0].mean(axis=1)
+    return float(2 * np.pi * radii @ lengths)
+
+
+def _check_distance(case: AssemblyCase, name: str, faces: _Opposite) -> None:
+    """Check that bodies neither overlap nor lie apart, and that glued faces touch."""
+    path, overlap = f"contacts.{name}.between", -faces.gap
+    of_body = f"of {faces.body!r}, which measures {length(faces.height)} across"
+    if overlap > SQUEEZED * faces.height:
+        raise CaseError(
+            f"{path}: the bodies overlap by {length(overlap)}{faces.where}, "
+            f"{overlap / faces.height:.0%} {of_body}; move the faces to initial contact"
+        )
+    if faces.gap > faces.height:
+        raise CaseError(
+            f"{path}: the bodies lie {length(faces.gap)} apart{faces.where}, more than the height "
+            f"{of_body}; move the faces to initial contact"
+        )
+    if case.contacts[name].tie and abs(overlap) > MUCH * faces.height:
+        raise CaseError(
+            f"{path}: the glued faces lie {length(abs(overlap))} "
+            f"{'over' if overlap > 0 else 'from'} each other{faces.where}; let them touch"
+        )
+    if overlap > MUCH * faces.height:
+        note(
+            f"{path}: the bodies overlap by {length(overlap)} before loading{faces.where}, "
+            f"{overlap / faces.height:.1%} {of_body}"
+        )
+
+
+def _check_loads(mesh: AnyMesh, case: AssemblyCase, area: float) -> None:
+    """Check that forces and approaches are small, as wrong units are not.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh or MixedMesh
+    case : AssemblyCase
+    area : float
+        Of all contacts, which bear a force together at the most [m²].
+    """
+    moduli = {part: _modulus(case, part) for part in case.geometry.parts}
+    softer = min(moduli, key=moduli.__getitem__)
+    for name, holder in case.holders.items():
+        history = holder.history
+        courses = (None, None) if history is None else (history.force, history.approach)
+        force = max(courses[0] or (holder.force or 0.0,))
+        if area > 0.0 and force > SQUEEZED * area * moduli[softer]:
+            raise CaseError(
+                f"holders.{name}.force: a mean pressure of {force / area / 1e6:.4g} MPa on all "
+                f"contacts is {force / area / moduli[softer]:.2g} times the modulus of {softer!r} "
+                "(check geometry.length_unit)"
+            )
+        approach = max(courses[1] or (holder.approach or 0.0,))
+        size = float(np.ptp(mesh.points, axis=0).max())
+        if approach > SQUEEZED * size:
+            raise CaseError(
+                f"holders.{name}.approach: {length(approach)} is {approach / size:.0%} of the size "
+                "of the bodies (check geometry.length_unit)"
+            )
+
+
+def _modulus(case: AssemblyCase, part: str) -> float:
+    return case.located_material(part)[1].young_modulus or np.inf

@@ -1,0 +1,67 @@
+"""Meshes of bodies from one file or a file each, with their named surfaces and cell sets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from ..mesh.mixed import AnyMesh
+from .assembly import assemble, divided
+from .contents import MeshContents, joined
+from .file_contents import read_contents
+from .named import Named
+
+
+def read_bodies(
+    path: str | None,
+    paths: Mapping[str, str],
+    dim: int,
+    length_unit: float,
+    cells: Mapping[str, tuple[str, ...]],
+    surfaces: Sequence[Named],
+    with_material: Mapping[str, Mapping[str, str]],
+) -> AnyMesh:
+    """Read bodies, the nodes of each apart from those of the others.
+
+    Parameters
+    ----------
+    path : str or None
+        File of all bodies.
+    paths : mapping of str to str
+        Files by body instead, in the order of the bodies.
+    dim : int
+        Dimension of the bodies.
+    length_unit : float
+        Length of one unit of the files [m].
+    cells : mapping of str to tuple of str
+        Cell sets of each body.
+    surfaces : sequence of Named
+    with_material : mapping of str to mapping of str to str
+        Cell sets that become parts of their own, by body, with the paths of their tables.
+
+    Raises
+    ------
+    CaseError
+        One line, reported at the key at fault.
+    """
+    contents = _contents(path, {body: paths[body] for body in cells if paths}, dim)
+    contents = replace(contents, points=contents.points * length_unit)
+    bodies = [
+        Named(body, sets, f"geometry.bodies.{body}", index)
+        for index, (body, sets) in enumerate(cells.items())
+    ]
+    parts = [
+        Named(f"{body}.{name}", (name,), key, index)
+        for index, body in enumerate(cells)
+        for name, key in with_material.get(body, {}).items()
+    ]
+    return divided(assemble(contents, bodies, list(surfaces)), contents, bodies, parts)
+
+
+def _contents(path: str | None, paths: Mapping[str, str], dim: int) -> MeshContents:
+    """Contents of the file, or of those of all bodies."""
+    if path is not None:
+        return read_contents(Path(path), dim)
+    each = [read_contents(Path(of), dim, f"geometry.paths.{b}") for b, of in paths.items()]
+    return joined(each)

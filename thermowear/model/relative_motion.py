@@ -1,0 +1,72 @@
+"""Sliding at an interface from the motions of its two bodies."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..errors import CaseError
+from .conditions import Motion
+
+
+def relative_motion(first: Motion | None, second: Motion | None, axisymmetric: bool) -> Motion:
+    """Sliding of the first body of an interface over the second one.
+
+    Parameters
+    ----------
+    first, second : Motion or None
+        Motions of the bodies: along x, across a section, about the axis of an axisymmetric model,
+        or anticlockwise about a centre. None: at rest.
+    axisymmetric : bool
+
+    Raises
+    ------
+    CaseError
+        If the first body turns about a centre, or both bodies move other than along or about the
+        same axis.
+    """
+    if first is None and second is None:
+        return Motion()
+    if first is None or second is None:
+        found = (
+            _over_moving(second, axisymmetric) if first is None else _moving(first, axisymmetric)
+        )
+        assert found is not None
+        return found
+    one, other = _moving(first, axisymmetric), _over_moving(second, axisymmetric)
+    turn = one.angular_velocity is not None, other.angular_velocity is not None
+    if turn[0] != turn[1] or one.across != other.across or one.history != other.history:
+        raise CaseError(
+            "motions: two bodies that slide on each other must both translate, or both rotate "
+            "about the axis of the model, with one history"
+        )
+    return replace(
+        other,
+        velocity=_sum(one.velocity, other.velocity),
+        angular_velocity=_sum(one.angular_velocity, other.angular_velocity),
+    )
+
+
+def _moving(motion: Motion, axisymmetric: bool) -> Motion:
+    """Motion of the first body over one at rest."""
+    if motion.velocity is None and not axisymmetric:
+        raise CaseError(
+            "motions: the first body of an interface cannot rotate about a centre, only the second "
+            "one; two bodies in contact cannot both do so"
+        )
+    return replace(motion, center=None)
+
+
+def _over_moving(motion: Motion | None, axisymmetric: bool) -> Motion:
+    """Motion of a first body at rest over a moving one."""
+    assert motion is not None
+    if motion.velocity is not None:
+        passes = not motion.across and not axisymmetric
+        return replace(motion, velocity=-motion.velocity, center=None, passes=passes)
+    if axisymmetric:
+        assert motion.angular_velocity is not None
+        return replace(motion, angular_velocity=-motion.angular_velocity, center=None)
+    return replace(motion, passes=True)
+
+
+def _sum(one: float | None, other: float | None) -> float | None:
+    return None if one is None or other is None else one + other

@@ -1,0 +1,1 @@
+"""Models of several bodies: brakes with two pads, packs of clutch disks, seals."""

@@ -70,6 +70,7 @@ def parser() -> argparse.ArgumentParser:
     shape.add_argument(
         "--body", metavar="NAME", help="body whose face is shaped; default: the body in the holder"
     )
+    shape.add_argument("--face", metavar="NAME", help="its contact face, of a body with several")
     _add_flag(shape, "--overwrite")
 
     verify = _command(commands, "verify", "verify against reference solutions")

@@ -116,7 +116,7 @@ def _validate(chosen) -> int:
         from ..geometry.checks.mesh_checks import described, whole_bodies
 
         properties += described(whole_bodies(case.tagged_mesh(), case.geometry))
-    if case.geometry.initial_shape is not None:
+    if case.initial_shapes:
         from .workers import start_petsc
 
         start_petsc()
@@ -126,7 +126,7 @@ def _validate(chosen) -> int:
         from ..simulation.system.building import check_contact_points
 
         check_contact_points(model_of(case), MPI.COMM_SELF)
-        properties.append(f"initial shape {case.geometry.initial_shape}")
+        properties += [f"initial shape {shape}" for shape in case.initial_shapes]
     print(f"{chosen.case}: ok ({', '.join(properties)})")
     return 0
 
@@ -153,10 +153,12 @@ def _shape(chosen) -> int:
     check_format(chosen.output)
     start_petsc()
     _check_absent(chosen.output, chosen.overwrite)
-    shaped = shape(chosen.case, chosen.body, tuple(chosen.overrides))
+    shaped = shape(chosen.case, chosen.body, tuple(chosen.overrides), chosen.face)
     write_shape(shaped, chosen.output)
     deepest = 1e6 * shaped.design.depth.max()
-    print(f"wrote {chosen.output}: face of {shaped.body}, up to {deepest:.4g} µm to be removed")
+    print(
+        f"wrote {chosen.output}: face of {shaped.body.name}, up to {deepest:.4g} µm to be removed"
+    )
     return 0
 
 

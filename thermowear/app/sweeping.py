@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import load
-from ..case import Case, as_plain
+from ..case import AnyCase, as_plain
 from ..errors import CaseError, ComputationError
 from ..interrupts import DeferredSignals
 from ..output.console import Terminal
@@ -27,13 +27,13 @@ from .workers import start_petsc, work_off
 
 
 def sweep(
-    case: Case | str | Path, over: Mapping[str, Sequence[Any]]
+    case: AnyCase | str | Path, over: Mapping[str, Sequence[Any]]
 ) -> list[tuple[dict[str, Any], Result | ComputationError]]:
     """Compute all combinations of values of keys of a case in this process.
 
     Parameters
     ----------
-    case : Case, str or Path
+    case : AnyCase, str or Path
         Case, or path of a case file.
     over : mapping of str to sequence
         Values by key path, as in a case file: ``{"load.force": ["1 kN", "2 kN"]}``.
@@ -53,7 +53,7 @@ def sweep(
     from ..simulation.analyses.run import Series, groups
     from ..simulation.from_case import analysis_of, model_of
 
-    source = as_plain(case) if isinstance(case, Case) else case
+    source = as_plain(case) if isinstance(case, AnyCase) else case
     found = variants(source, {key: [written(v) for v in values] for key, values in over.items()})
     results: dict[int, Result | ComputationError] = {}
     for group in groups([model_of(variant.case) for variant in found]):

@@ -13,7 +13,7 @@ from .. import load
 from ..errors import CaseError
 
 if TYPE_CHECKING:
-    from ..case import Case
+    from ..case import AnyCase
 
 _PAIRS = {"[": "]", "{": "}"}
 _QUOTES = "\"'"
@@ -29,12 +29,12 @@ class Variant:
         Number of the variant, from 1.
     values : dict of str to str
         Values by key, as given by the user.
-    case : Case
+    case : AnyCase
     """
 
     number: int
     values: dict[str, Any]
-    case: Case
+    case: AnyCase
 
 
 def variants(

@@ -18,6 +18,7 @@ from pydantic import ValidationError
 
 from ..errors import MOST_FAULTS, CaseError, quoted, shortened
 from ..user_files import read_text
+from .any_case import AnyCase
 from .assembly.geometry import known_assemblies
 from .assembly.schema import AssemblyCase
 from .tables.geometry_choice import known_geometries
@@ -25,9 +26,6 @@ from .tables.schema import Case
 from .validation.assembly import check as check_assembly
 from .validation.checks import check
 from .values.section import FOLDER, KeyFault, Section
-
-AnyCase = Case | AssemblyCase
-"""Case of two bodies, or of several."""
 
 LARGEST_FILE = 2_000_000
 """Largest size of a case file [bytes]."""

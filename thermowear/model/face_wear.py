@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import CaseError
 from ..laws.coefficients import Multipliers
-from ..laws.distribution import Distribution, InPlace
+from ..laws.distribution import IN_PLACE, Distribution, InPlace
 from ..laws.expressions import Region
 from ..laws.interfaces import Law, LocalState
 from ..laws.law_by_point import law_by_point
@@ -40,7 +40,7 @@ class FaceWear:
     law: Law
     factors: Multipliers = field(default_factory=Multipliers)
     friction_exponent: float = 0.0
-    track: Distribution | Track = field(default_factory=InPlace)
+    track: Distribution | Track = IN_PLACE
     per: str | None = None
 
     @property
@@ -155,7 +155,7 @@ class CompositeWear:
         self, points: np.ndarray, weights: np.ndarray, thickness: float
     ) -> Distribution:
         """Distribution of the wear at contact points: in place."""
-        return InPlace()
+        return IN_PLACE
 
     @property
     def has_layers(self) -> bool:

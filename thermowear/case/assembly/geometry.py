@@ -42,8 +42,6 @@ class AssemblyGeometry(Section):
         Bodies whose whole ring passes through that sector.
     mesh_files : str or None
         Paths of the mesh files, for messages; None if the mesh is made by the program.
-    initial_shape : None
-        No worn shape is read for several bodies.
     """
 
     name: ClassVar[str]
@@ -56,7 +54,6 @@ class AssemblyGeometry(Section):
     rings: ClassVar[tuple[str, ...]] = ()
     from_file: ClassVar[bool] = False
     mesh_files: ClassVar[str | None] = None
-    initial_shape: ClassVar[None] = None
 
     type: str
 

@@ -81,6 +81,12 @@ class AssemblyCase(Section):
         return located_material(self.geometry, self.bodies, part)
 
     @property
+    def initial_shapes(self) -> list[str]:
+        """Files with initial worn shapes."""
+        shapes = (contact.initial_shape for contact in self.contacts.values())
+        return [shape for shape in shapes if shape is not None]
+
+    @property
     def cycles(self) -> None:
         """No analysis of several bodies has cycles."""
 

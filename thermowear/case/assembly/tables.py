@@ -12,7 +12,7 @@ from ..tables.laws import Conductance
 from ..tables.materials import BodyTable
 from ..tables.tabulated import FactorHistory, History
 from ..values import units
-from ..values.section import KeyFault, Number, Section, Switch, number_or
+from ..values.section import KeyFault, Number, Section, Switch, UserFile, number_or
 
 _PARTITION = number_or(
     "effusivity",
@@ -29,6 +29,7 @@ _OF_SLIDING = (
     "partition",
     "compliance",
     "fluid_pressure",
+    "initial_shape",
 )
 """Keys without a meaning for glued faces."""
 
@@ -54,6 +55,8 @@ class AssemblyContactTable(InterfaceTable):
         Both contact faces, that of body 1 first; by default those of this name in the geometry.
     conductance, gap_conductance, partition
         See `model.interface.Interface`; the partition is the fraction into body 1.
+    initial_shape : str or None
+        File with an initial worn shape, as ``geometry.initial_shape`` of a pair.
     tie : bool
         Glued faces, without friction, heat or wear.
     """
@@ -62,6 +65,7 @@ class AssemblyContactTable(InterfaceTable):
     conductance: Conductance | None = None
     gap_conductance: units.HeatTransfer | None = None
     partition: Annotated[float | Literal["effusivity"] | None, _PARTITION] = None
+    initial_shape: UserFile | None = None
     tie: Switch = False
 
     @model_validator(mode="after")

@@ -83,6 +83,12 @@ def part_named(geometry: Any, body: str, name: str) -> str | None:
     return next((part for part in zones if set_of.get(part, part) == name), None)
 
 
+def set_with_material(geometry: Any, bodies: Mapping[str, BodyTable], part: str) -> str | None:
+    """Cell set that a part represents and that has a material; a wear law alone is none."""
+    owner, chosen = geometry.zones.get(part, part), geometry.set_of.get(part)
+    return chosen if owner in bodies and chosen in bodies[owner].materials else None
+
+
 def located_material(
     geometry: Any, bodies: Mapping[str, BodyTable], part: str
 ) -> tuple[str, Properties]:
@@ -101,9 +107,7 @@ def located_material(
     """
     owner = geometry.zones.get(part, part)
     name = part if part in bodies else owner
-    chosen = geometry.set_of.get(part)
-    if chosen is not None and chosen not in bodies[owner].materials:
-        chosen = None  # it has a wear law of its own only
+    chosen = set_with_material(geometry, bodies, part)
     if chosen is None and not bodies[name].has_own and bodies[name].materials:
         chosen = next(iter(bodies[name].materials))  # all of its cells are in sets
     table: Properties = bodies[name]

@@ -203,6 +203,12 @@ class Case(Section):
         """Material of a part, with ``like`` resolved; a zone may share the material of its body."""
         return self.located_material(part)[1]
 
+    @property
+    def initial_shapes(self) -> list[str]:
+        """Files with initial worn shapes."""
+        shape = self.geometry.initial_shape
+        return [] if shape is None else [shape]
+
     def located_material(self, part: str) -> tuple[str, Properties]:
         """Path of the table that defines the material of a part, and this material.
 

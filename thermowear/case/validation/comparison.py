@@ -6,17 +6,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from ..any_case import AnyCase
 from ..assembly.schema import AssemblyCase
 from ..tables.analyses import Fretting, Reciprocating, Timed
-from ..tables.schema import Case, as_plain
+from ..tables.schema import as_plain
 from ..values.section import Section
-
-AnyCase = Case | AssemblyCase
 
 _FREE = {"title", "analysis.max_steps", "analysis.frames", "analysis.checkpoint_every"}
 """Keys that do not affect any computed number."""
-_FILES = {"geometry.path", "geometry.initial_shape"}
-"""Keys of files, whose path may change: the meshes and gaps read from them are compared instead."""
+_FILES = ("geometry.path", ".initial_shape")
+"""Ends of keys of files, whose path may change: meshes and gaps read from them are compared."""
 _END = {"analysis.end_time", "analysis.cycles", "wear.cycles"}
 _OUTPUTS = "analysis.output_times"
 _LONGEST = 60  # characters of a value that is shown
@@ -58,12 +57,13 @@ def forbidden_changes(before: AnyCase, now: AnyCase, time: float) -> list[Change
     The physics must be identical. The end may change unless it has passed, and so may later
     output times and the paths of files.
     """
-    free = _FREE | _FILES
+    free = set(_FREE)
     if _end_time(before) is not None and (_end_time(now) or 0.0) >= time:
         free |= _END
     if _outputs(before, time) == _outputs(now, time):
         free.add(_OUTPUTS)
-    return [change for change in changes(before, now) if change.key not in free]
+    found = (change for change in changes(before, now) if not change.key.endswith(_FILES))
+    return [change for change in found if change.key not in free]
 
 
 def _differences(one: Any, other: Any, path: str) -> Iterator[Change]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..assembly.schema import AssemblyCase
+from ..any_case import AnyCase
 from ..tables.contact import InterfaceTable
 from ..tables.schema import Case
 from ..tables.wear import BodyWearTable
@@ -13,7 +13,7 @@ from ..values.section import Fault
 _CYCLIC = ("fretting", "reciprocating")
 
 
-def layer_wear(case: Case | AssemblyCase) -> Iterator[Fault]:
+def layer_wear(case: AnyCase) -> Iterator[Fault]:
     """Layers cover a face of one material, and their laws have what they depend on."""
     for body, wear in case.wear.items():
         if wear.layers is None:
@@ -28,7 +28,7 @@ def layer_wear(case: Case | AssemblyCase) -> Iterator[Fault]:
             yield from _friction(table, contact, path, wear)
 
 
-def _contacts(case: Case | AssemblyCase, body: str) -> Iterator[tuple[str, InterfaceTable]]:
+def _contacts(case: AnyCase, body: str) -> Iterator[tuple[str, InterfaceTable]]:
     """Contacts that a body slides in, and the paths of their tables."""
     if isinstance(case, Case):
         yield "contact", case.contact
@@ -38,7 +38,7 @@ def _contacts(case: Case | AssemblyCase, body: str) -> Iterator[tuple[str, Inter
             yield f"contacts.{name}", contact
 
 
-def _state(case: Case | AssemblyCase, path: str, wear: BodyWearTable) -> Iterator[Fault]:
+def _state(case: AnyCase, path: str, wear: BodyWearTable) -> Iterator[Fault]:
     """Temperatures that rates depend on need heat."""
     for layer, law in enumerate(wear.of_layers):
         if law.rate is not None and "T" in law.variables and case.heat is None:

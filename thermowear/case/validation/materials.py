@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..assembly.schema import AssemblyCase
-from ..tables.materials import Properties
+from ..any_case import AnyCase
+from ..tables.materials import Properties, set_with_material
 from ..tables.schema import Case
 from ..values.section import Fault
 
@@ -15,7 +15,7 @@ contact: up to this value the error of the force is at most twice that at 0.3; n
 degree 3 on."""
 
 
-def locking(case: Case | AssemblyCase) -> Iterator[Fault]:
+def locking(case: AnyCase) -> Iterator[Fault]:
     """Volumetric locking of low-order elements at nearly constant volume."""
     limit = _LOCKING.get(case.mesh.degree)
     if limit is None or case.model == "plane-stress":
@@ -39,9 +39,7 @@ def materials(case: Case) -> Iterator[Fault]:
         if name not in case.bodies:
             continue
         table: Properties = case.bodies[name]
-        path, in_set = f"bodies.{name}", geometry.set_of.get(part)
-        if in_set not in case.bodies[name].materials:
-            in_set = None  # it has a wear law of its own only
+        path, in_set = f"bodies.{name}", set_with_material(geometry, case.bodies, part)
         if in_set is not None:
             path, table = f"{path}.materials.{in_set}", case.bodies[name].materials[in_set]
         own = part == name or in_set is not None
@@ -63,7 +61,7 @@ def materials(case: Case) -> Iterator[Fault]:
     yield from missing.items()
 
 
-def cell_sets(case: Case | AssemblyCase) -> Iterator[Fault]:
+def cell_sets(case: AnyCase) -> Iterator[Fault]:
     """Materials by cell set require bodies of a mesh file, with a material for each cell."""
     geometry = case.geometry
     for name, body in case.bodies.items():

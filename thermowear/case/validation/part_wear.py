@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..assembly.schema import AssemblyCase
+from ..any_case import AnyCase
 from ..tables.materials import part_named
-from ..tables.schema import Case
 from ..values.section import Fault
 
 _CYCLIC = ("fretting", "reciprocating")
 
 
-def part_wear(case: Case | AssemblyCase) -> Iterator[Fault]:
+def part_wear(case: AnyCase) -> Iterator[Fault]:
     """Wear laws of parts name parts of the body, which wears in place, in one direction."""
     geometry, type_ = case.geometry, case.analysis.type
     for body, wear in case.wear.items():

@@ -20,7 +20,7 @@ import numpy as np
 import scipy
 
 from ...errors import ComputationError
-from ..distribution import Distribution, InPlace
+from ..distribution import IN_PLACE, Distribution
 from ..interfaces import Law, LocalState, Values
 from ..power_wear import PowerWear
 from .interior_point import solve
@@ -114,7 +114,7 @@ def steady_pressure(
         If points do not slide, all wear is spread over tracks, free motions are dependent at the
         faces, or a rate decreases with pressure.
     """
-    spread = spread if spread is not None else [InPlace()] * len(laws)
+    spread = spread if spread is not None else [IN_PLACE] * len(laws)
     factors = factors if factors is not None else np.ones((len(laws), len(weights)))
     if not np.all(speed > 0):
         raise ComputationError("no steady state: the sliding speed is 0 at some contact points")

@@ -18,18 +18,20 @@ from ..system.system import System
 _SAME = 1e-9  # relative to the size of the face: closer points coincide
 
 
-def steady_design(system: System, body: int) -> Design:
+def steady_design(system: System, number: int, side: int) -> Design:
     """Unloaded, unheated shape of a face that carries the steady pressure from the start.
 
     Only the gap counts: one face takes the whole shape, worn or not, the other one keeps its drawn
-    shape. Least material removal: ``W = R d - B u - g0``, nowhere negative, where ``R d`` is a
-    motion of the holder.
+    shape. Least material removal: ``W = R d - B u - g0``, nowhere negative, where ``R d`` are
+    motions of the holders, common to all contacts.
 
     Parameters
     ----------
     system : System
-    body : int
-        Body whose face takes the shape: 1 or 2.
+    number : int
+        Number of the interface.
+    side : int
+        Face of the interface that takes the shape: 0 or 1.
 
     Raises
     ------
@@ -37,32 +39,30 @@ def steady_design(system: System, body: int) -> Design:
         If there is no steady state.
     """
     found = steady_state(system)
-    state, pairing = body_state(system, found.contact), system.pairing
+    state = body_state(system, found.contact)
     state.require_balance()
-    pressure = found.wear.pressure
-    open_by = state.opening + system.softness * pressure + pairing.gap
+    pressure, gap = found.wear.pressure, system.contacts.gap
+    open_by = state.opening + system.softness * pressure + gap
     modes = system.holder.modes
     position = least_worn(modes, open_by, system.weights, pressure > 0)
     depth = np.maximum(modes @ position - open_by, 0.0)
-    side = pairing.sides[body - 1]
-    points, normals = side.face.points(side.facet, side.t), pairing.normals
-    s = pairing.position
-    if body == 2:
-        normals = side.face.normals(side.facet, side.t)
-        s = side.position
-    height = pairing.gap + depth
-    height_along = height / along_load(system)
+    own, pairing = system.contacts.ranges[number], system.contacts.each[number]
+    depth, height, along = depth[own], gap[own] + depth[own], along_load(system)[own]
+    at, other = pairing.sides[side], side == 1
+    points, normals = at.face.points(at.facet, at.t), pairing.normals
+    height_along = height / along
     design = Design(
-        body=body,
+        body=side + 1,
         points=points,
-        s=s,
-        normals=normals,
+        s=at.position if other else pairing.position,
+        normals=at.face.normals(at.facet, at.t) if other else normals,
         shape=height.max() - height,
         shape_along_press=np.nanmax(height_along) - height_along,
         depth=depth,
     )
-    face = side.face
-    return _from_end_to_end(design, face) if isinstance(face, Face) else _single(design, face)
+    return (
+        _from_end_to_end(design, at.face) if isinstance(at.face, Face) else _single(design, at.face)
+    )
 
 
 def _single(design: Design, face: Surface) -> Design:

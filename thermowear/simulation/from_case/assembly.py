@@ -121,6 +121,7 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
         },
         compliance=table.compliance or 0.0,
         fluid_pressure=table.fluid_pressure,
+        initial_shape=table.initial_shape,
         pressure_degree=table.pressure_degree,
     )
 

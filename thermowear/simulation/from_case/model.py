@@ -24,7 +24,7 @@ from ...case.values.section import Section
 from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh
 from ...laws.coefficients import Multipliers
-from ...laws.distribution import Distribution, InPlace
+from ...laws.distribution import IN_PLACE, Distribution
 from ...laws.interfaces import Law
 from ...model.body import Body, Material
 from ...model.conditions import Heat, Holder, Motion
@@ -231,7 +231,7 @@ def _wear(case: Case) -> dict[int, Wear]:
 def _track(case: Case, wear: BodyWearTable) -> Distribution | Track:
     geometry = case.geometry
     if wear.spread == "in-place":
-        return InPlace()
+        return IN_PLACE
     if geometry.footprint is not None and geometry.rotation_center is not None:
         return PinTrack(geometry.rotation_center, *geometry.footprint)
     if geometry.duty_by_radius is not None and geometry.rotation_center is not None:

@@ -69,7 +69,8 @@ def contact_points(
     pairing, basis = _points(model, interface, kinematics, face_1, face_2, comm=comm)
     shape = interface.initial_shape
     if shape is not None:
-        pairing = replace(pairing, gap=initial_gap(comm, shape, pairing))
+        key = f"{interface.table if interface.name else 'geometry'}.initial_shape"
+        pairing = replace(pairing, gap=initial_gap(comm, shape, pairing, key))
     return pairing, basis
 
 

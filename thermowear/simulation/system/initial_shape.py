@@ -13,7 +13,6 @@ from ...geometry.cad.design import CARRIERS, from_table, read_table
 from ...parallel import on_root
 from ...user_files import read_text
 
-_KEY = "geometry.initial_shape"
 _BEYOND = 1e-6  # of the length of the face
 _UNIT = 300.0  # times that length: a table of a longer face passes, one in millimetres does not
 _STEP = 0.01  # of the range of shapes: left at a border of materials by the running-in
@@ -21,7 +20,7 @@ _LARGEST_FILE = 100_000_000  # bytes
 _LARGEST_NUMBER = 1e100  # differences of larger ones overflow in interpolation
 
 
-def initial_gap(comm, path: str, pairing: Pairing) -> np.ndarray:
+def initial_gap(comm, path: str, pairing: Pairing, key: str) -> np.ndarray:
     """Gap of the unloaded faces with an initial worn shape. Every rank calls.
 
     Parameters
@@ -33,6 +32,8 @@ def initial_gap(comm, path: str, pairing: Pairing) -> np.ndarray:
         with its columns ``s_m`` and ``shape_m``: that shape replaces the nominal gap.
     pairing : Pairing
         Contact points of the nominal faces.
+    key : str
+        Path of the key of the case file that names it.
 
     Returns
     -------
@@ -43,31 +44,32 @@ def initial_gap(comm, path: str, pairing: Pairing) -> np.ndarray:
     CaseError
         If the file holds no shape, or the shape of another face.
     """
-    table = on_root(comm, lambda: _checked(path, lambda: read_table(Path(path))))
+    where = f"{key}: {path}"
+    table = on_root(comm, lambda: _checked(where, lambda: read_table(Path(path))))
     gdim = pairing.points.shape[1]
     if table is not None:
-        design = _checked(path, lambda: from_table(table, gdim))
+        design = _checked(where, lambda: from_table(table, gdim))
         side = pairing.sides[design.body - 1]
         points = side.face.points(side.facet, side.t)
-        return pairing.gap + _checked(path, lambda: design.depth_at(points))
+        return pairing.gap + _checked(where, lambda: design.depth_at(points))
     if gdim == 3 or Path(path).suffix in CARRIERS:
-        raise CaseError(f"{_KEY}: {path} carries no design (the command shape writes them)")
-    return _gap_along(path, on_root(comm, lambda: _read(path)), pairing.position)
+        raise CaseError(f"{where} carries no design (the command shape writes them)")
+    return _gap_along(where, on_root(comm, lambda: _read(where, path)), pairing.position)
 
 
-def _gap_along(path: str, table: np.ndarray, position: np.ndarray) -> np.ndarray:
+def _gap_along(where: str, table: np.ndarray, position: np.ndarray) -> np.ndarray:
     """Gap by a shape given over the length along the face [m]."""
-    s, shape = _curve(path, table)
+    s, shape = _curve(where, table)
     length = position[-1]
     if max(s[-1], -s[0]) > _UNIT * length:
         raise CaseError(
-            f"{_KEY}: {path} ranges from s_m = {s[0]:.6g} to {s[-1]:.6g}, more than {_UNIT:g} "
+            f"{where} ranges from s_m = {s[0]:.6g} to {s[-1]:.6g}, more than {_UNIT:g} "
             f"times the length of the contact face, {length:.6g} m; is it in metres?"
         )
     beyond = _BEYOND * length
     if s[0] > position[0] + beyond or s[-1] < position[-1] - beyond:
         raise CaseError(
-            f"{_KEY}: {path} ranges from s = {s[0]:.6g} to {s[-1]:.6g} m, the contact face from "
+            f"{where} ranges from s = {s[0]:.6g} to {s[-1]:.6g} m, the contact face from "
             f"{position[0]:.6g} to {position[-1]:.6g} m"
         )
     height = scipy.interpolate.Akima1DInterpolator(s, shape, method="makima")(
@@ -75,50 +77,49 @@ def _gap_along(path: str, table: np.ndarray, position: np.ndarray) -> np.ndarray
     )
     if not np.ptp(height) < length:
         raise CaseError(
-            f"{_KEY}: {path} has shapes that rise by {np.ptp(height):.3g} m on a contact face of "
+            f"{where} has shapes that rise by {np.ptp(height):.3g} m on a contact face of "
             f"{length:.6g} m; are they in metres?"
         )
     return height.max() - height
 
 
-def _curve(path: str, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _curve(where: str, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     names = table.dtype.names or ()
     if not {"s_m", "shape_m"} <= set(names) or table.size < 2:
-        raise CaseError(f"{_KEY}: {path} has no columns s_m and shape_m with numbers")
+        raise CaseError(f"{where} has no columns s_m and shape_m with numbers")
     points = np.unique(np.column_stack([table["s_m"], table["shape_m"]]), axis=0)
     if not np.all(np.abs(points) < _LARGEST_NUMBER):
-        raise CaseError(f"{_KEY}: {path} has entries that are no numbers, or beyond 1e100 m")
+        raise CaseError(f"{where} has entries that are no numbers, or beyond 1e100 m")
     s, shape = points.T
     twice = np.flatnonzero(np.diff(s) == 0.0)
     step = shape[twice + 1] - shape[twice]
     if len(twice) and step.max() > _STEP * np.ptp(shape):
         place = s[twice[step.argmax()]]
-        raise CaseError(f"{_KEY}: {path} has different shapes at s_m = {place:.6g}")
+        raise CaseError(f"{where} has different shapes at s_m = {place:.6g}")
     shape[twice] += step / 2
     s, shape = np.delete(s, twice + 1), np.delete(shape, twice + 1)
     if len(s) < 2:
-        raise CaseError(f"{_KEY}: {path} has one place only; a shape needs two")
+        raise CaseError(f"{where} has one place only; a shape needs two")
     return s, shape
 
 
-def _read(path: str) -> np.ndarray:
-    lines = _checked(path, lambda: read_text(Path(path), _LARGEST_FILE)).splitlines()
+def _read(where: str, path: str) -> np.ndarray:
+    lines = _checked(where, lambda: read_text(Path(path), _LARGEST_FILE)).splitlines()
     if not any(line.strip() for line in lines):
-        raise CaseError(f"{_KEY}: {path} is empty")
+        raise CaseError(f"{where} is empty")
     try:
         return np.genfromtxt(lines, delimiter=",", names=True)
     except ValueError as error:
         reason = " ".join(str(error).split())[:200]
         raise CaseError(
-            f"{_KEY}: {path} cannot be read as columns between commas, with points in numbers: "
-            f"{reason}"
+            f"{where} cannot be read as columns between commas, with points in numbers: {reason}"
         ) from None
 
 
-def _checked(path: str, action):
+def _checked(where: str, action):
     """Call an action; raise its file errors as `CaseError`."""
     try:
         return action()
     except (OSError, ValueError) as error:
         reason = f"cannot be read: {error.strerror}" if isinstance(error, OSError) else error
-        raise CaseError(f"{_KEY}: {path} {reason}") from None
+        raise CaseError(f"{where} {reason}") from None

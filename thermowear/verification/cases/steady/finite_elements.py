@@ -159,7 +159,7 @@ def _from_its_shape(name: str, *overrides: str, mesh: tuple[str, ...]) -> tuple[
     """
     steady = run_starter(name, *overrides, *mesh)
     model = model_of(starter(name, *overrides))
-    design = steady_design(prepare(model, MPI.COMM_WORLD, Phases(lambda _: None)), 1)
+    design = steady_design(prepare(model, MPI.COMM_WORLD, Phases(lambda _: None)), 0, 0)
     fastest = (steady.interface.wear_rate_1 + steady.interface.wear_rate_2).max()
     end = _WORN * design.depth.max() / fastest
     times = ", ".join(f"'{part * end:.12g} s'" for part in _TIMES)

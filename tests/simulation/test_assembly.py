@@ -131,12 +131,12 @@ def test_other_units():
 
 
 @needs_mpirun
-@pytest.mark.parametrize("kind", ["quasi-steady", "in time"])
+@pytest.mark.parametrize("kind", assembly_on_ranks.KINDS)
 def test_two_ranks(tmp_path, kind):
     """requirement: two ranks give the running-in of the serial run, to 1e-8."""
     done = thermowear(2, kind, tmp_path, module="tests.simulation.assembly_on_ranks")
     assert done.returncode == 0, done.stderr
-    expected = assembly_on_ranks.computed(kind == "in time")
+    expected = assembly_on_ranks.computed(kind)
     for rank in (0, 1):
         parallel = np.load(tmp_path / f"found_{rank}.npz")
         for name, values in expected.items():

@@ -4,7 +4,7 @@ import io
 
 from rich.console import Console
 
-from thermowear.output.console import ConsoleProgress
+from thermowear.output.console import ConsoleProgress, print_summary
 from thermowear.results import HistoryRow
 
 
@@ -38,3 +38,21 @@ def test_one_live_line_on_a_terminal():
     text = shown(terminal=True)
     assert "\x1b[2K" in text or "\r" in text
     assert text.rstrip().splitlines()[-1].count("t = 1 s") == 1
+
+
+def test_tables_of_bodies_and_contacts():
+    """requirement: no heading is cut, no table without numbers, volumes in mm³."""
+    contact = {"normal_force_N": 500.0, "shape_range_m": 2e-6, "wear_volume_1_m3": 3e-9}
+    contact |= {"max_pressure_Pa": 2e6, "friction_torque_Nm": 21.0, "friction_power_W": 105.0}
+    text = io.StringIO()
+    summary = {"contacts": {"left": contact}, "bodies": {"disk": {}}, "holders": {"hub": {}}}
+    print_summary(Console(file=text, width=80), summary, {})
+    heads = text.getvalue()
+    assert "…" not in heads
+    assert "bodies" not in heads
+    assert "holders" not in heads
+    text.truncate(0)
+    summary["bodies"]["disk"]["wear_volume_m3"] = 4e-9
+    print_summary(Console(file=text, width=80), summary, {})
+    assert "worn volume [mm³]" in text.getvalue()
+    assert text.getvalue().splitlines()[-2].split() == ["phase", "seconds"]

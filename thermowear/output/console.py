@@ -114,8 +114,10 @@ def print_summary(console: Console, summary: dict, seconds: dict[str, float]) ->
         numbers.add_row(label, value)
     console.print(numbers)
     for kind in ("contacts", "holders", "bodies"):
-        if kind in summary:
-            console.print(_side_by_side(kind, summary[kind]))
+        parts = summary.get(kind, {})
+        keys = [k for k in _OF_PARTS[kind] if any(part.get(k) for part in parts.values())]
+        if keys:
+            console.print(_side_by_side(kind, parts, keys))
     times = _table("phase", "seconds")
     for name, value in seconds.items():
         times.add_row(PHASES.get(name, name), f"{value:.3f}")
@@ -123,9 +125,8 @@ def print_summary(console: Console, summary: dict, seconds: dict[str, float]) ->
     console.print(times)
 
 
-def _side_by_side(kind: str, parts: dict[str, dict[str, Any]]) -> Table:
-    """Main numbers of the contacts, holders or bodies of a model, a row for each of them."""
-    keys = [k for k in _OF_PARTS[kind] if any(part.get(k) for part in parts.values())]
+def _side_by_side(kind: str, parts: dict[str, dict[str, Any]], keys: list[str]) -> Table:
+    """Numbers of the contacts, holders or bodies of a model, a row for each of them."""
     quantities = [of_key(key) for key in keys]
     table = _table(kind, *(escape(f"{q.label} [{q.unit}]") for q in quantities))
     for name, part in parts.items():
@@ -138,7 +139,7 @@ def _table(label: str, *columns: str) -> Table:
     """Table without lines: labels in the first column, numbers in the others."""
     table = Table(label, **_PLAIN)
     for name in columns:
-        table.add_column(name, justify="right")
+        table.add_column(name, justify="right", overflow="fold")
     return table
 
 

@@ -50,6 +50,7 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
         from_key("wear_dissipation_W", "wear dissipation power"),
         _history["wear_volume_1"],
         _history["wear_volume_2"],
+        from_key("wear_volume_m3", "worn volume", "mm³", "of a body, at all its contacts"),
         *(
             from_key(
                 f"layer_volumes_{body}_m3",

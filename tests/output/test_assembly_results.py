@@ -193,6 +193,6 @@ def test_commands_for_several_bodies(tmp_path, capsys):
     assert not (tmp_path / "sweep/shapes.png").exists()
     capsys.readouterr()
     assert main(["shape", str(case), "-o", str(tmp_path / "shape.csv")]) == 1
-    assert "is for cases of two bodies" in capsys.readouterr().err
+    assert "there are several contact faces" in capsys.readouterr().err
     with pytest.raises(tw.CaseError, match=r"^analysis\.frames: not supported"):
         tw.load(case, tuple(word[6:] for word in TIMES) + ("analysis.frames=3",))

@@ -104,16 +104,6 @@ def _is_number(name: str) -> bool:
     return True
 
 
-def _supports(case: AssemblyCase) -> Iterator[Fault]:
-    """Supports are surfaces of their own body."""
-    for name, body in case.bodies.items():
-        for key in ("fixed", "rollers", "mid_plane"):
-            for surface in getattr(body, key):
-                owner = case.geometry.body_of(surface)
-                if owner != name:
-                    yield f"bodies.{name}.{key}", f"{surface!r} is a surface of {owner}"
-
-
 def _holders(case: AssemblyCase) -> Iterator[Fault]:
     """Every body has one holder, or supports; somewhere it is pressed."""
     holders = dict[str, str]()
@@ -245,4 +235,4 @@ def _heat(case: AssemblyCase) -> Iterator[Fault]:
         yield "heat.advection", text
 
 
-_CHECKS = (_contacts, _supports, _analysis, _holders, _motions, _wear, _materials, _heat)
+_CHECKS = (_contacts, _analysis, _holders, _motions, _wear, _materials, _heat)

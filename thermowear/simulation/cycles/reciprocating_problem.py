@@ -124,11 +124,7 @@ class ReciprocatingProblem(WearProblem):
         fastest = float(self.rates(state.pressure).max())
         return 1e-3 * float((opened / self.areas[0]).max()) / fastest if fastest > 0.0 else np.inf
 
-    def steady(self, steady) -> np.ndarray:
-        """No steady pressure: the steady-state principle does not cover reciprocating motion."""
-        return steady
-
-    def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
+    def distance(self, state: InterfaceState, steady) -> float:
         """Nonuniformity of the wear rates, which are uniform along both faces in the steady state.
 
         Largest relative deviation from the mean, excluding the ends of the faces: at the turning

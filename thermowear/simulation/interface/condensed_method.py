@@ -111,7 +111,7 @@ class CondensedMethod:
         assert space is not None
         return space.at_points(np.diag(space.compliance(self._contact.compliance)))
 
-    def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
+    def steady(self, pressure, rates: WearRates, conditions, pointwise=None) -> np.ndarray:
         """Steady-state principle in the pressure space.
 
         The wear rates, weighted by the basis functions, equal the rigid-body wear velocity. That is
@@ -125,9 +125,12 @@ class CondensedMethod:
             pressure, no_motion, SignoriniSolution(coefficients, no_motion, active)
         )
         rigid, thermal_gap = np.zeros_like(contact.compliance), np.zeros(len(coefficients))
+        space = self._space(contact, pointwise)
+        if space is not None:
+            space = replace(space, local_compliance=np.zeros_like(space.local_compliance))
         return newton_with_wear(
             lambda worn, slope, last: self._solved(
-                contact, None, rigid, thermal_gap, worn, slope, last, load
+                contact, space, rigid, thermal_gap, worn, slope, last, load
             ),
             rates,
             start,

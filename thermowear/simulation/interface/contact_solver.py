@@ -77,7 +77,11 @@ class ContactSolver(Protocol):
         """
 
     def steady(
-        self, pressure: np.ndarray, rates: WearRates, conditions: InterfaceConditions
+        self,
+        pressure: np.ndarray,
+        rates: WearRates,
+        conditions: InterfaceConditions,
+        pointwise: np.ndarray | None = None,
     ) -> np.ndarray:
         """Steady pressure in the discretisation of the solver, from that of the principle [Pa].
 
@@ -87,6 +91,8 @@ class ContactSolver(Protocol):
         rates : WearRates
         conditions : InterfaceConditions
             Conditions in the steady state.
+        pointwise : ndarray of bool, shape (n,), optional
+            Points with pointwise contact.
         """
 
     def largest_deflection(self, contact: ContactSolution) -> float:

@@ -74,7 +74,7 @@ class FullMethod:
     def point_compliance(self, points) -> np.ndarray:
         return np.where(points, self._edge_compliance, np.nan)
 
-    def steady(self, pressure, rates: WearRates, conditions) -> np.ndarray:
+    def steady(self, pressure, rates: WearRates, conditions, pointwise=None) -> np.ndarray:
         """Pressure of the principle unchanged: the full system has no pressure space."""
         return pressure
 

@@ -22,6 +22,7 @@ from .interface_wear import InterfaceWear
 from .pointwise_method import PointwiseMethod
 from .sdirk import InterfaceState, WearProblem
 from .steady import SteadyState
+from .steady_limit import SteadyLimit
 
 _UNWORN = (
     "contact: the iteration for the contact set and the state-dependent properties did not "
@@ -45,6 +46,7 @@ class InterfaceProblem(WearProblem):
         self._last_conditions: tuple[bytes, InterfaceConditions] | None = None
         self._wear = InterfaceWear(system)
         self._edge = GrowingEdge(system, method, self._wear)
+        self._limit = SteadyLimit(method, self._wear, self._edge)
         self._gap, n = system.contacts.gap - system.holder.imposed, len(system.weights)
         self._softness, self._rigid = system.softness, Slope.diagonal(np.zeros(n))
         self._unworn = np.zeros((len(self._wear.laws), n))
@@ -266,17 +268,14 @@ class InterfaceProblem(WearProblem):
             step = min(step, self.heat.first_step(float(made.max())))
         return step
 
-    def steady(self, steady: SteadyState) -> np.ndarray:
-        """Steady pressure of the discrete interface, the limit of its running-in [Pa]."""
-        final = self._wear.final_rates(steady.contact.conditions)
-        return self._method.steady(steady.wear.pressure, final, steady.contact.conditions)
-
-    def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
-        """Relative difference to a steady pressure; NaN without one, or with layers left on."""
-        layered = self._wear.layered
-        if steady is None or (layered and self._wear.are_left(state.worn, steady > 0.0)):
+    def distance(self, state: InterfaceState, steady: SteadyState | None) -> float:
+        """Relative difference to the steady pressure; NaN without one, or with layers left on."""
+        if steady is None:
             return float("nan")
-        return float(np.abs(state.pressure - steady).max() / steady.max())
+        limit = self._limit.pressure(steady, state)
+        if self._wear.layered and self._wear.are_left(state.worn, limit > 0.0):
+            return float("nan")
+        return float(np.abs(state.pressure - limit).max() / limit.max())
 
 
 def interface_problem(

@@ -187,11 +187,7 @@ class WearProblem(ABC):
         """Initial step [s]; may be infinite."""
 
     @abstractmethod
-    def steady(self, steady) -> np.ndarray:
-        """Pressure of the discrete interface in a steady state [Pa]."""
-
-    @abstractmethod
-    def distance(self, state: InterfaceState, steady: np.ndarray | None) -> float:
+    def distance(self, state: InterfaceState, steady) -> float:
         """Relative distance from the steady state; NaN where that is not known."""
 
 

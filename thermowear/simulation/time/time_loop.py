@@ -21,6 +21,8 @@ _SMALLEST = 1e-12  # relative to the elapsed time; at the start to 1e-12 s
 
 _HIT = 1e-9
 """Distance to a target time, relative to the time left, at which a step is taken to end there."""
+_ROUNDING, _STILL = 1e-9, 20
+"""Error and number of successive steps, ever larger ones, in which nothing changes any more."""
 _FEW = 5
 """Largest number of powers of two that make up an interval; bounds the number of small steps."""
 
@@ -153,7 +155,7 @@ def moments(
     problem : WearProblem
     settings : TimedAnalysis
     steady : object
-        Steady state in the form that ``problem.steady`` takes; None without one.
+        Steady state in the form that ``problem.distance`` takes; None without one.
     sizes : StepSizes, optional
         `AnySize` by default.
     last : Moment, optional
@@ -165,13 +167,13 @@ def moments(
         If the step becomes too small or the number of steps too large. Yielded states stay valid.
     """
     sizes = sizes or AnySize()
-    steady = None if steady is None else problem.steady(steady)
     if last is None:
         state = problem.start()
         distance, wanted = problem.distance(state, steady), problem.first_step(state)
         last = Moment(0.0, 0.0, state, 0.0, False, distance, 0, 0.0, wanted)
         yield last
     targets = [time for time in times_to_hit(settings, problem) if time > last.time]
+    still = 0
     while not is_over(settings, last):
         if last.number == settings.max_steps:
             raise ComputationError(
@@ -182,6 +184,13 @@ def moments(
         if last.time == targets[0]:
             targets.pop(0)
         yield last
+        still = still + 1 if last.error <= _ROUNDING else 0
+        if still == _STILL and targets == [math.inf]:
+            raise ComputationError(
+                f"{settings.type}: nothing changes any more at {last.time:.4g} s, at a distance of "
+                f"{last.distance:.2g} from the steady state (analysis.steady_tolerance = "
+                f"{settings.steady_tolerance:g}); use a finer mesh, or a larger tolerance"
+            )
 
 
 def is_over(settings: TimedAnalysis, last: Moment) -> bool:

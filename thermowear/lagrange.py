@@ -5,6 +5,7 @@ Cells have unit sides, and kinds by the names of `basix.CellType`.
 
 from __future__ import annotations
 
+import atexit
 import math
 from functools import cache
 
@@ -21,6 +22,9 @@ def equispaced(kind: str, order: int):
     return basix.create_element(
         basix.ElementFamily.P, basix.CellType[kind], order, basix.LagrangeVariant.equispaced
     )
+
+
+atexit.register(equispaced.cache_clear)  # basix reports elements that outlive it on the terminal
 
 
 def tabulated(element, points: np.ndarray, derivatives: int = 0) -> np.ndarray:

@@ -18,6 +18,8 @@ import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text, starters
 
+from ..conftest import DEMOS
+
 SMALL = ("--set", "mesh.degree=2", "--set", "mesh.elements=2")
 NAMES = ("punch", "plate")
 TOO_LONG = "n" * 300
@@ -475,3 +477,13 @@ def test_a_run_where_nothing_can_be_written(target, more, case, refused):
     before = contents()
     assert f"error: -o {target}: cannot be written" in refused("run", case, "-o", target, *more)
     assert contents() == before
+
+
+@pytest.mark.parametrize("name", ["own_mesh", "two_pads_3d"])
+def test_checks_are_all_that_validate_shows(name):
+    """requirement: one line, and nothing of a library beside it, at the end of the process too."""
+    words = [sys.executable, "-m", "thermowear", "validate", str(DEMOS / f"{name}.toml")]
+    paths = {"PYTHONPATH": str(DEMOS.parent)}
+    done = subprocess.run(words, capture_output=True, text=True, check=True, env=os.environ | paths)
+    assert done.stderr == ""
+    assert len(done.stdout.splitlines()) == 1

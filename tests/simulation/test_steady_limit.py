@@ -1,7 +1,6 @@
-"""Ends of a running-in: the limit of the discrete interface, and one that is not the steady state."""
+"""Ends of a running-in: the limit of the discrete interface, and another one."""
 
 import numpy as np
-import pytest
 
 import thermowear as tw
 from thermowear.errors import ComputationError

@@ -12,6 +12,7 @@ from ..tables.conditions import HeatTable
 from ..tables.contact import InterfaceTable
 from ..tables.materials import Properties, cell_sets, located_material
 from ..tables.schema import MeshTable, check_size
+from ..tables.tabulated import TimeHistory
 from ..tables.wear import WearTable
 from ..values.section import Section
 from .geometry import AnyAssembly
@@ -79,6 +80,24 @@ class AssemblyCase(Section):
     def located_material(self, part: str) -> tuple[str, Properties]:
         """Path of the table that defines the material of a part, and this material."""
         return located_material(self.geometry, self.bodies, part)
+
+    @property
+    def contact_tables(self) -> dict[str, InterfaceTable]:
+        """Tables of the contacts that slide, by their path."""
+        each = self.contacts.items()
+        return {f"contacts.{name}": table for name, table in each if not table.tie}
+
+    @property
+    def histories(self) -> dict[str, TimeHistory]:
+        """Time histories by the path of their key."""
+        found: dict[str, TimeHistory | None]
+        found = {f"holders.{name}.history": h.history for name, h in self.holders.items()}
+        found |= {f"motions.{name}.history": m.history for name, m in self.motions.items()}
+        for path, table in self.contact_tables.items():
+            found[f"{path}.friction_history"] = table.friction_history
+        if self.heat is not None:
+            found |= {f"heat.{key}": course for key, course in self.heat.histories.items()}
+        return {key: course for key, course in found.items() if course is not None}
 
     @property
     def initial_shapes(self) -> list[str]:

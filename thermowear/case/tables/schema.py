@@ -13,7 +13,7 @@ from ...errors import CaseError
 from ..values.section import Number, Section
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
-from .contact import ContactTable
+from .contact import ContactTable, InterfaceTable
 from .geometry import Pressing
 from .geometry_choice import AnyGeometry
 from .materials import BodyTable, Properties, cell_sets, located_material, part_named
@@ -143,6 +143,11 @@ class Case(Section):
         """Number of cycles of the loads or of the motion; None if none is given."""
         in_analysis = getattr(self.analysis, "cycles", None)
         return self.wear.cycles if in_analysis is None else in_analysis
+
+    @property
+    def contact_tables(self) -> dict[str, InterfaceTable]:
+        """Tables of the contacts by their path."""
+        return {"contact": self.contact}
 
     @property
     def histories(self) -> dict[str, TimeHistory]:

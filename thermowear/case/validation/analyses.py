@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from ..any_case import AnyCase
 from ..tables.analyses import Fretting, Reciprocating, Transient
 from ..tables.schema import Case
 from ..tables.tabulated import History
@@ -101,16 +102,17 @@ def _passes_disk(case: Case) -> bool:
     return spread and any(track is not None for track in tracks)
 
 
-def _factors(case: Case) -> Iterator[str]:
+def _factors(case: AnyCase) -> Iterator[str]:
     """Paths of all tables of factors of materials."""
     for name, body in case.bodies.items():
         yield from (f"bodies.{name}.{key}" for key in _FACTORS if getattr(body, key) is not None)
 
 
-def varying(case: Case) -> Iterator[Fault]:
+def varying(case: AnyCase) -> Iterator[Fault]:
     """Variables of laws and tables of factors that are available in the analysis."""
     type_, constant = case.analysis.type, case.analysis.type in _CONSTANT
-    tables = {"contact.friction_factor": case.contact.friction_factor}
+    contacts = case.contact_tables
+    tables = {f"{path}.friction_factor": table.friction_factor for path, table in contacts.items()}
     tables |= {f"wear.{name}.factor": law.factor for name, law in case.wear.laws.items()}
     for path, table in tables.items():
         if constant and table.depends_on:
@@ -119,10 +121,11 @@ def varying(case: Case) -> Iterator[Fault]:
             yield f"{path}.temperature", "needs a [heat] table, which computes the temperatures"
     if constant:
         yield from ((path, f"is not supported in a {type_} analysis") for path in _factors(case))
-    laws = {"contact.friction": case.contact.friction_law.variables}
+    frictions = {f"{path}.friction": table for path, table in contacts.items()}
+    laws = {path: table.friction_law.variables for path, table in frictions.items()}
     laws |= {f"wear.{name}.rate": law.variables for name, law in case.wear.laws.items() if law.rate}
     for path, variables in laws.items():
-        friction = path == "contact.friction"
+        friction = path in frictions
         refused = sorted(variables if friction else variables & {"T", "depth"})
         unsupported = f"depends on {', '.join(refused)}; not supported in a {type_} analysis"
         if constant and refused and friction:

@@ -13,6 +13,8 @@ from ..assembly.schema import AssemblyCase
 from ..assembly.tables import SUPPORTS
 from ..values.section import Fault
 from . import materials
+from .analyses import varying
+from .assembly_histories import histories
 from .layer_wear import layer_wear
 from .part_wear import part_wear
 
@@ -85,6 +87,8 @@ _CHECKS = (
     _sliding,
     materials.cell_sets,
     materials.locking,
+    histories,
+    varying,
     layer_wear,
     part_wear,
     _carried,

@@ -1,0 +1,51 @@
+"""Consistency checks of the histories of a case of several bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..assembly.schema import AssemblyCase
+from ..assembly.tables import AssemblyHolderTable
+from ..tables.analyses import Fretting
+from ..values.section import Fault
+
+_CYCLIC = ("cycles", "max_jump")
+_NOT_FORCE = ("approach", "tangential_force", "tangential_displacement", "cycle_start")
+_UNVARIED = ("moments", "tangential_force", "closing_moment")
+
+
+def histories(case: AssemblyCase) -> Iterator[Fault]:
+    """Histories are for analyses in time, and have no steady state."""
+    analysis = case.analysis
+    if isinstance(analysis, Fretting):
+        return
+    for path in case.histories if analysis.type != "transient" else ():
+        yield path, f"requires a transient analysis, not {analysis.type}"
+    if getattr(analysis, "until", None) is not None and case.histories:
+        which = next(iter(case.histories))
+        yield "analysis.until", f"there is no steady state under {which}; give end_time only"
+    for name, holder in case.holders.items():
+        yield from _of_holder(f"holders.{name}", holder)
+    for path, contact in case.contact_tables.items():
+        if contact.friction_history is not None and contact.nominal_friction == 0.0:
+            yield f"{path}.friction_history", f"has no effect: {path}.friction is 0"
+    for key in _CYCLIC:
+        if getattr(case.wear, key) is not None:
+            yield f"wear.{key}", "requires a fretting or reciprocating analysis"
+
+
+def _of_holder(path: str, holder: AssemblyHolderTable) -> Iterator[Fault]:
+    """Only the force may vary in a transient analysis, without other loads of the holder."""
+    history = holder.history
+    if history is None:
+        return
+    for key in _NOT_FORCE:
+        if getattr(history, key) is not None:
+            text = "requires a fretting analysis; a transient one supports force only"
+            yield f"{path}.history.{key}", text
+    if history.force is None:
+        yield f"{path}.history.force", "missing; required in a transient analysis"
+    for key in _UNVARIED:
+        if getattr(holder, key):
+            text = f"cannot be combined with {path}.history, which varies the force only"
+            yield f"{path}.{key}", text

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ..balances import BALANCES, holds
+from ..balances import errors_of, holds
 from ..results.summary_keys import PHASES, of_key
 
 _PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
@@ -100,7 +100,7 @@ _OF_PARTS = {
         "wear_volume_2_m3",
     ),
     "holders": ("approach_m", "rigid_wear_velocity_m_per_s"),
-    "bodies": ("contact_heat_W", "wear_volume_m3"),
+    "bodies": ("contact_heat_W", "friction_torque_Nm", "wear_volume_m3"),
 }
 """Numbers of the parts of a model of several bodies that are printed."""
 _SMALLEST_SHOWN = 1e-3
@@ -191,9 +191,9 @@ def _highlights(summary: dict):
             value = f"{quantity.drawn(summary[key]):.{digits}g} {quantity.unit}"
             yield label or quantity.label, value + more
 
-    for key, balance in BALANCES.items():
-        if exists(key) and not holds(summary[key]):
-            yield f"NOT BALANCED: {balance.name}", f"relative error {summary[key]:.1e}"
+    for where, balance, error in errors_of(summary):
+        if not holds(error):
+            yield f"NOT BALANCED: {balance.name}{where}", f"relative error {error:.1e}"
     yield from row("normal_force_N", unit="kN")
     if exists("min_pressure_Pa"):
         low, high = (

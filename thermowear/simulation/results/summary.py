@@ -17,6 +17,7 @@ from ...results import Result
 from ..system.fluid import fluid_forces
 from ..system.rigid_modes import applied, guides
 from ..system.system import System
+from .body_balances import balances, friction_torques
 from .coatings import layer_volumes
 from .recording import Snapshot, profile
 
@@ -70,8 +71,11 @@ def summarise(end: Snapshot, time: float) -> dict:
     holders = [_of_holder(turned, index) for index in range(len(model.holders))]
     if model.is_pair:
         return size | interfaces[0] | holders[0] | state
+    bodies = [_of_body(model, k, interfaces) for k in range(len(model.bodies))]
+    whole, each = balances(turned, [body["wear_volume_m3"] for body in bodies])
     return size | {
         **state,
+        **whole,
         "max_pressure_Pa": float(end.contact.pressure.max()),
         "friction_power_W": sum(found["friction_power_W"] for found in interfaces),
         "wear_dissipation_W": sum(found["wear_dissipation_W"] for found in interfaces),
@@ -81,7 +85,8 @@ def summarise(end: Snapshot, time: float) -> dict:
         },
         "holders": dict(zip((h.name for h in model.holders), holders, strict=True)),
         "bodies": {
-            body.name: _of_body(model, k, interfaces) for k, body in enumerate(model.bodies)
+            body.name: found | errors
+            for body, found, errors in zip(model.bodies, bodies, each, strict=True)
         },
     }
 
@@ -147,7 +152,7 @@ def _of_holder(end: Snapshot, index: int) -> dict:
 
 
 def _of_body(model: Model, index: int, interfaces: list[dict]) -> dict:
-    """Volume worn from a body and heat into it, at all of its interfaces."""
+    """Volume worn from a body, heat into it and friction torque at all of its interfaces."""
     sides = [
         (found, interface.bodies.index(index) + 1)
         for found, interface in zip(interfaces, model.interfaces, strict=True)
@@ -156,7 +161,7 @@ def _of_body(model: Model, index: int, interfaces: list[dict]) -> dict:
     result = {"wear_volume_m3": sum(found[f"wear_volume_{side}_m3"] for found, side in sides)}
     if model.heat is not None:
         result["contact_heat_W"] = sum(found[f"contact_heat_{side}_W"] for found, side in sides)
-    return result
+    return result | friction_torques(model, index, interfaces)
 
 
 def _friction(interface: Interface, friction: np.ndarray, force: np.ndarray) -> dict[str, float]:

@@ -15,7 +15,7 @@ from ...model.interface import Interface
 from ...model.model import Model
 from ...results import Result
 from ..system.fluid import fluid_forces
-from ..system.rigid_modes import applied, guides
+from ..system.rigid_modes import guides, loads_on
 from ..system.system import System
 from .body_balances import balances, friction_torques
 from .coatings import layer_volumes
@@ -68,7 +68,7 @@ def summarise(end: Snapshot, time: float) -> dict:
     }
     turned = replace(end, system=system.with_friction(end.contact.conditions.friction))
     interfaces = [_of_interface(turned, index) for index in range(len(model.interfaces))]
-    holders = [_of_holder(turned, index) for index in range(len(model.holders))]
+    holders = [_of_holder(turned, index, time) for index in range(len(model.holders))]
     if model.is_pair:
         return size | interfaces[0] | holders[0] | state
     bodies = [_of_body(model, k, interfaces) for k in range(len(model.bodies))]
@@ -137,8 +137,8 @@ def _of_interface(end: Snapshot, index: int) -> dict:
     }
 
 
-def _of_holder(end: Snapshot, index: int) -> dict:
-    """Position of a holder, and the reactions of its guides."""
+def _of_holder(end: Snapshot, index: int, time: float) -> dict:
+    """Position of a holder, and the reactions of its guides, at a time [s]."""
     system, holder = end.system, end.system.model.holders[index]
     motion, direction = end.motions[index], np.array(holder.load_direction)
     turned = zip(_ROTATIONS.items(), motion.rotation, strict=True)
@@ -146,7 +146,7 @@ def _of_holder(end: Snapshot, index: int) -> dict:
         "approach_m": float(motion.at(np.array(holder.pivot)) @ direction),
         "guide_force_N": None,
         "rigid_wear_velocity_m_per_s": None,
-        **_guide_reactions(system, holder, end.contact.pressure),
+        **_guide_reactions(system, holder, end.contact.pressure, time),
         **{key: float(angle) for (name, key), angle in turned if name in holder.free},
     }
 
@@ -253,7 +253,9 @@ def _torque(
     return float(pairing.weights @ (friction * np.linalg.norm(arms, axis=1)))
 
 
-def _guide_reactions(system: System, holder: Holder, pressure: np.ndarray) -> dict[str, float]:
+def _guide_reactions(
+    system: System, holder: Holder, pressure: np.ndarray, time: float
+) -> dict[str, float]:
     """Guide reactions on the bodies of a holder along its constrained motions [N, N m].
 
     For the whole body: the forces between the halves of a symmetric section cancel.
@@ -261,7 +263,9 @@ def _guide_reactions(system: System, holder: Holder, pressure: np.ndarray) -> di
     model, reactions = system.model, {}
     for name, motion in guides(model.kinematics, holder).items():
         if name not in holder.free:
-            mode, load = RigidMode(motion, load=0.0, bodies=holder.bodies), applied(holder, motion)
+            mode, load = RigidMode(motion, load=0.0, bodies=holder.bodies), 0.0
+            for part, history in loads_on(model.holders, holder, motion):
+                load += part if history is None else part * history.factor_at(time)
             response = hold(system.contacts, system.traction_direction, [mode]).force_response
             dead = system.dead_resultant(motion)[list(holder.bodies)].sum()
             reaction = float(system.weights @ (pressure * response[:, 0])) - load - float(dead)

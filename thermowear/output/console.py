@@ -96,6 +96,8 @@ _OF_PARTS = {
         "max_pressure_Pa",
         "shape_range_m",
         "friction_power_W",
+        "critical_speed_m_per_s",
+        "critical_angular_velocity_rad_per_s",
         "wear_volume_1_m3",
         "wear_volume_2_m3",
     ),
@@ -258,6 +260,8 @@ def _margin(summary: dict, *quantities: str) -> str:
 def _critical(summary: dict, which: str) -> str:
     """Critical speed, and the speed of the case relative to it."""
     part = 1 / summary[f"critical_speed_factor{which}"]
+    if "contacts" in summary:
+        return f"this case: {part:.3g} times the critical speeds"
     speed = summary[f"critical_speed{which}_m_per_s"]
     turning = summary[f"critical_angular_velocity{which}_rad_per_s"]
     critical = f"{turning:.4g} rad/s" if speed is None else f"{speed * 1e3:.4g} mm/s"

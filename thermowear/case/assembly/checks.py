@@ -12,6 +12,7 @@ from ...errors import CaseError
 from ...laws.motions import spans
 from ..values.section import Fault
 from .schema import AssemblyCase
+from .stability import check_stability
 from .tables import SUPPORTS, AssemblyHolderTable
 
 _NAME, _AT = re.compile(r"[\w-]+"), "_at_"
@@ -289,4 +290,5 @@ _CHECKS = (
     _wear,
     _materials,
     _heat,
+    check_stability,
 )

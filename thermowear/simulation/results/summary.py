@@ -159,7 +159,7 @@ def _of_body(model: Model, index: int, interfaces: list[dict]) -> dict:
         if index in interface.bodies
     ]
     result = {"wear_volume_m3": sum(found[f"wear_volume_{side}_m3"] for found, side in sides)}
-    if model.heat is not None:
+    if all(f"contact_heat_{side}_W" in found for found, side in sides):
         result["contact_heat_W"] = sum(found[f"contact_heat_{side}_W"] for found, side in sides)
     return result | friction_torques(model, index, interfaces)
 
@@ -225,15 +225,15 @@ def conclude(end: Snapshot, extra: dict, time: float = 0.0, **recorded) -> tuple
     **recorded
         Further attributes of the result, such as its histories.
     """
-    summary = _merged(summarise(end, time), extra)
+    summary = merged(summarise(end, time), extra)
     contacts = end.system.ranges_by_name
     return end, Result(end.interface, profile(end), summary, contacts=contacts, **recorded)
 
 
-def _merged(one: dict, other: dict) -> dict:
+def merged(one: dict, other: dict) -> dict:
     """Union of two tables and of the tables in them; the other's values replace those of one."""
     shared = {
-        key: _merged(one[key], table)
+        key: merged(one[key], table)
         for key, table in other.items()
         if isinstance(table, dict) and isinstance(one.get(key), dict)
     }

@@ -61,10 +61,13 @@ class SupportForces:
     strained : ndarray, shape (n_nodes, gdim)
         Forces of constrained thermal expansion, without their part that grows beyond bounds
         towards ν = 0.5 [N].
+    owned : tuple of ndarray of bool, shape (n_nodes,)
+        Nodes of each body.
     """
 
     nodal: np.ndarray
     strained: np.ndarray
+    owned: tuple[np.ndarray, ...]
 
 
 @dataclass(frozen=True)
@@ -116,7 +119,9 @@ def support_forces(
     """
     elastic, shape = system.elastic, (-1, system.contacts.points.shape[1])
     nodal = elastic.reactions(displacement, loads) + elastic.joint_forces(displacement, loads)
-    return SupportForces(nodal.reshape(shape), elastic.compressibility() * strained.reshape(shape))
+    owned = tuple(elastic.owned_by(*body.parts) for body in system.model.bodies)
+    strained = elastic.compressibility() * strained.reshape(shape)
+    return SupportForces(nodal.reshape(shape), strained, owned)
 
 
 def force_error(system: System, contact: ContactState, supports: SupportForces) -> float:
@@ -177,17 +182,16 @@ def body_equilibrium(
     middle = np.average(system.contacts.points, axis=0, weights=system.weights)
     axes = np.eye(3) if len(middle) == 3 else np.eye(3)[2:]
     turns = [work_of(system, contact, supports, rotation(axis, middle)) for axis in axes]
-    found, sizes = np.array([work.residual for work in turns]), _sizes(system, middle)
+    found, sizes = np.array([work.residual for work in turns]), _sizes(system, supports, middle)
     pairs = zip(np.abs(found).max(axis=0), scales * sizes, strict=True)
     total = relative(float(np.abs(found.sum(axis=1)).max()), whole * sizes.max())
     return BodyEquilibrium(errors, [relative(e, s) for e, s in pairs], total)
 
 
-def _sizes(system: System, middle: np.ndarray) -> np.ndarray:
+def _sizes(system: System, supports: SupportForces, middle: np.ndarray) -> np.ndarray:
     """Largest distance of a node of each body from a point, shape (n_bodies,) [m]."""
     distances = np.linalg.norm(system.elastic.nodes() - middle, axis=1)
-    owned = (system.elastic.owned_by(*body.parts) for body in system.model.bodies)
-    own = [float(distances[mask].max(initial=0.0)) for mask in owned]
+    own = [float(distances[mask].max(initial=0.0)) for mask in supports.owned]
     return np.max(system.comm.allgather(own), axis=0)
 
 
@@ -198,8 +202,7 @@ def work_of(
     moved = motion.at(system.elastic.nodes())
     work = (supports.nodal * moved).sum(axis=1)
     each = work, np.abs(work), np.abs(supports.strained * moved).sum(axis=1)
-    owned = [system.elastic.owned_by(*body.parts) for body in system.model.bodies]
-    sums = np.array([[values[own].sum() for own in owned] for values in each])
+    sums = np.array([[values[own].sum() for own in supports.owned] for values in each])
     held, borne, thermal = sum_over_ranks(system.comm, sums)
     given = system.dead_resultant(motion)
     found, carried = _borne_by_bodies(system, contact, motion)

@@ -26,18 +26,31 @@ class Balance:
     remedy: str
 
 
+_STIFF = (
+    "the stiffness is too ill-conditioned: use Poisson ratios farther from 0.5, stiffnesses of the "
+    "parts of a body that differ by less, or a lower mesh.degree"
+)
 BALANCES = {
     "equilibrium_relative_error": Balance(
         "equilibrium",
         "the forces on the bodies",
-        "the stiffness is too ill-conditioned: use Poisson ratios farther from 0.5, stiffnesses of "
-        "the parts of a body that differ by less, or a lower mesh.degree",
+        _STIFF,
+    ),
+    "force_balance_relative_error": Balance("balance of forces", "the forces on it", _STIFF),
+    "moment_balance_relative_error": Balance(
+        "balance of moments", "the forces times the size of the body", _STIFF
     ),
     "heat_balance_relative_error": Balance(
         "heat balance",
         "the heat turned over",
         "some heat has hardly a way out: check heat.cooling and heat.temperature, and use "
         "conductivities and cooling that differ by less",
+    ),
+    "wear_volume_relative_error": Balance(
+        "worn volume by the wear rates in time",
+        "the volume worn off",
+        "the wear of the track is not that of its contacts: use more elements along the contacts "
+        "(mesh.elements)",
     ),
     "geometry_volume_error": Balance(
         "worn volume",
@@ -65,10 +78,26 @@ def relative(missing: float, scale: float) -> float:
 def violated(summary: Mapping[str, Any]) -> list[str]:
     """One line per violated balance of a summary: its name, error and remedy."""
     return [
-        f"the {balance.name} has a relative error of {summary[key]:.1e} of {balance.scale} "
+        f"the {balance.name}{where} has a relative error of {error:.1e} of {balance.scale} "
         f"(allowed: {ALLOWED:g}); {balance.remedy}"
+        for where, balance, error in errors_of(summary)
+        if not holds(error)
+    ]
+
+
+def errors_of(summary: Mapping[str, Any]) -> list[tuple[str, Balance, float]]:
+    """Balances of a summary with their errors: those of all bodies, then of each of several.
+
+    With the body that each belongs to, as in " of disk"; empty for all bodies.
+    """
+    bodies = summary.get("bodies")
+    each = bodies.items() if isinstance(bodies, Mapping) else ()
+    tables = [("", summary), *((f" of {name}", table) for name, table in each)]
+    return [
+        (where, balance, table[key])
+        for where, table in tables
         for key, balance in BALANCES.items()
-        if isinstance(summary.get(key), int | float) and not holds(summary[key])
+        if isinstance(table.get(key), int | float)
     ]
 
 

@@ -9,6 +9,7 @@ import tomli_w
 
 from thermowear.app.cli import main
 from thermowear.output import tables
+from thermowear.verification.cases.assembly.pad_disk_pad import Brake
 
 from ..case.starter import tables as case_tables
 
@@ -69,3 +70,34 @@ def test_growing_waves(tmp_path, capsys):
     time_constant = f"{1 / summary['growth_rate_per_s']:.4g} s"
     assert f"pressure perturbations grow with time constant {time_constant}" in said
     assert "mm/s; this case:" in said
+
+
+@pytest.mark.usefixtures("bodies_not_drawn")
+def test_modes_of_two_contacts(tmp_path, capsys):
+    """requirement: a table and a picture for each contact, normalised together; in the report."""
+    case = Brake("clamped", 9.0, heated=True, elements=4).tables("steady")
+    case |= {"analysis": {"type": "stability"}}
+    file, folder = tmp_path / "case.toml", tmp_path / "results"
+    file.write_bytes(tomli_w.dumps(case).encode())
+    assert main(["run", str(file), "-o", str(folder)]) == 0
+    assert "times the critical speeds" in " ".join(capsys.readouterr().out.split())
+    summary = json.loads((folder / "summary.json").read_text())
+    each = [tables.read(folder / f"mode_{side}.csv") for side in ("left", "right")]
+    contacts = [summary["contacts"][side] for side in ("left", "right")]
+    assert not (folder / "mode.csv").exists()
+    for modes, side in zip(each, ("left", "right"), strict=True):
+        points = tables.read(folder / f"interface_{side}.csv")
+        for number in np.unique(modes["mode"]):
+            np.testing.assert_array_equal(modes["s"][modes["mode"] == number], points["s"])
+        assert drawn(folder / f"mode_{side}.png") > 0.01
+    sizes = [np.hypot(modes["pressure"], modes["pressure_imaginary"]) for modes in each]
+    for number in np.unique(each[0]["mode"]):
+        pairs = zip(each, sizes, strict=True)
+        largest = [size[modes["mode"] == number].max() for modes, size in pairs]
+        assert max(largest) == pytest.approx(1.0, rel=1e-9)
+        assert min(largest) < 1.0
+    known = {contact["critical_angular_velocity_rad_per_s"] for contact in contacts}
+    assert known == {summary["critical_speed_factor"] * 0.5}
+    assert main(["report", str(folder)]) == 0
+    page = (folder / "report.html").read_text()
+    assert "Contact right: pressure perturbations" in page

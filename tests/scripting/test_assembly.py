@@ -84,6 +84,22 @@ def test_a_strip_between_two_blocks(between):
         solution.wear(upper, lower.one.body)
 
 
+def test_a_holder_that_bears_the_force_of_another(between):
+    """requirement: the lower block is pressed by the reaction; faults in one line."""
+    model, upper, lower = between
+    left, right, strip = model.holders
+    caliper = replace(right, free=("z",), direction=(0.0, 1.0))
+    piston, hub = replace(left, reaction=caliper), replace(strip, free=(), force=None)
+    floating = replace(model, holders=[piston, caliper, hub])
+    solution, expected = floating.initial(), model.initial()
+    for face in (upper, lower):
+        found = solution.pressure(face).values
+        np.testing.assert_allclose(found, expected.pressure(face).values, rtol=1e-9)
+    for holders in ([piston, hub, right], [replace(left, reaction=right), right, strip]):
+        with pytest.raises(tw.CaseError, match=r"^model: the reaction of the holder 'left' needs"):
+            replace(model, holders=holders).initial()
+
+
 def test_wear_in_time_of_two_interfaces(between):
     """requirement: worn volumes V = k F s at each interface."""
     model, upper, lower = between

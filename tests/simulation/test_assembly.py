@@ -112,8 +112,9 @@ def test_order_of_the_contacts_and_of_their_faces():
     assert_alike(found, expected, swapped=("left",))
     for name in ("bodies", "holders"):
         for key, entries in expected.summary[name].items():
-            for quantity, value in entries.items():
-                ours = found.summary[name][key][quantity]
+            errors = {quantity for quantity in entries if quantity.endswith("_relative_error")}
+            for quantity in entries.keys() - errors:
+                ours, value = found.summary[name][key][quantity], entries[quantity]
                 assert ours == pytest.approx(value, rel=1e-8, abs=1e-20), (name, key, quantity)
 
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -65,3 +68,15 @@ def combined(motions, amplitudes) -> RigidMotion:
     moved = sum((amplitude * motion.at(origin) for motion, amplitude in pairs), origin)
     turned = sum((amplitude * motion.rotation for motion, amplitude in pairs), origin)
     return RigidMotion(moved, turned, origin)
+
+
+def spans(
+    directions: Sequence[Sequence[float] | np.ndarray], vector: Sequence[float] | np.ndarray
+) -> bool:
+    """True if a vector is a combination of directions, up to rounding."""
+    given = np.asarray(vector, dtype=float)
+    if not directions:
+        return not given.any()
+    basis = np.array(directions, dtype=float).T
+    rest = given - basis @ np.linalg.lstsq(basis, given, rcond=None)[0]
+    return bool(np.linalg.norm(rest) <= _ROUNDING * np.linalg.norm(given))

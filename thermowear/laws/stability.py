@@ -60,7 +60,9 @@ def load_free(modes: np.ndarray, force_modes: np.ndarray) -> LoadFree:
 
 
 def _orthogonal(modes: np.ndarray) -> np.ndarray:
-    return null_space((modes / np.abs(modes).max(axis=0)).T)
+    largest = np.abs(modes).max(axis=0)
+    moving = largest > 0.0  # motions of holders that do not touch change nothing
+    return null_space((modes[:, moving] / largest[moving]).T)
 
 
 @dataclass(frozen=True)

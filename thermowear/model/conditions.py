@@ -6,6 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
+import numpy as np
+
+from ..laws.motions import spans
 from ..laws.time_course import LoadHistory, TimeFunction
 
 
@@ -40,6 +43,9 @@ class Holder:
         Moment of a holder that can only rotate, positive where it closes the contact [N m].
     history : LoadHistory or None
         Time history of the loads.
+    reaction : str
+        Name of another holder that bears the force, as a caliper bears that of its piston: the
+        opposite force acts on it at the same point. Empty: the surroundings bear it.
     surface_forces : mapping of str to float
         Forces along the load direction, distributed evenly over surfaces of body 1 [N].
     surface_pressures : mapping of str to float
@@ -60,6 +66,18 @@ class Holder:
     surface_pressures: Mapping[str, float] = field(default_factory=dict)
     bodies: tuple[int, ...] = (0,)
     name: str = ""
+    reaction: str = ""
+
+    @property
+    def pressing_force(self) -> np.ndarray:
+        """Force along the load direction, shape (gdim,) [N]."""
+        return (self.force or 0.0) * np.array(self.load_direction)
+
+    def admits(self, force: np.ndarray) -> bool:
+        """True if its free translations follow a force in any direction of (gdim,) components."""
+        along = [self.load_direction] if "z" in self.free and self.approach is None else []
+        across = [np.eye(len(force))["xy".index(name)] for name in self.free if name in ("x", "y")]
+        return spans([*along, *across], force)
 
 
 @dataclass(frozen=True)

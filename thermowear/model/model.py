@@ -138,6 +138,15 @@ class Model:
                 f"{len(self.bodies)}, and each may have one holder only"
             )
 
+        for holder in self.holders:
+            bearing = [h for h in self.holders if h.name == holder.reaction and h is not holder]
+            admitted = [h.admits(holder.pressing_force) for h in bearing]
+            if holder.reaction and (admitted != [True] or holder.force is None):
+                raise CaseError(
+                    f"model: the reaction of the holder {holder.name!r} needs its force, and one "
+                    f"other holder {holder.reaction!r} that is free along it, without an approach"
+                )
+
         for tie in self.ties:
             if len({self.bodies[index].ring for index in tie.bodies}) > 1:
                 raise CaseError(

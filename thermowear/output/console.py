@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from ..balances import BALANCES, holds
+from ..balances import errors_of, holds
 from ..results.summary_keys import PHASES, of_key
 
 _PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
@@ -96,11 +96,13 @@ _OF_PARTS = {
         "max_pressure_Pa",
         "shape_range_m",
         "friction_power_W",
+        "critical_speed_m_per_s",
+        "critical_angular_velocity_rad_per_s",
         "wear_volume_1_m3",
         "wear_volume_2_m3",
     ),
     "holders": ("approach_m", "rigid_wear_velocity_m_per_s"),
-    "bodies": ("contact_heat_W", "wear_volume_m3"),
+    "bodies": ("contact_heat_W", "friction_torque_Nm", "wear_volume_m3"),
 }
 """Numbers of the parts of a model of several bodies that are printed."""
 _SMALLEST_SHOWN = 1e-3
@@ -192,9 +194,9 @@ def _highlights(summary: dict):
             value = f"{quantity.drawn(summary[key]):.{digits}g} {quantity.unit}"
             yield label or quantity.label, value + more
 
-    for key, balance in BALANCES.items():
-        if exists(key) and not holds(summary[key]):
-            yield f"NOT BALANCED: {balance.name}", f"relative error {summary[key]:.1e}"
+    for where, balance, error in errors_of(summary):
+        if not holds(error):
+            yield f"NOT BALANCED: {balance.name}{where}", f"relative error {error:.1e}"
     yield from row("normal_force_N", unit="kN")
     if exists("min_pressure_Pa"):
         low, high = (
@@ -259,6 +261,8 @@ def _margin(summary: dict, *quantities: str) -> str:
 def _critical(summary: dict, which: str) -> str:
     """Critical speed, and the speed of the case relative to it."""
     part = 1 / summary[f"critical_speed_factor{which}"]
+    if "contacts" in summary:
+        return f"this case: {part:.3g} times the critical speeds"
     speed = summary[f"critical_speed{which}_m_per_s"]
     turning = summary[f"critical_angular_velocity{which}_rad_per_s"]
     critical = f"{turning:.4g} rad/s" if speed is None else f"{speed * 1e3:.4g} mm/s"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import cosh, pi, sinh, sqrt
 
 import numpy as np
 from scipy.optimize import brentq, minimize_scalar, newton
@@ -193,3 +193,60 @@ class ConductorOnInsulator:
         rates = κ * m**2 * (roots[roots.real > 0] ** 2 - 1)
         fastest = rates[np.argmax(rates.real)]
         return complex(fastest.real, abs(fastest.imag))
+
+
+@dataclass(frozen=True)
+class LayerBetweenInsulators:
+    """Conducting layer sliding between two insulating half-planes, both pressed on it.
+
+    As `ConductorOnInsulator` on both faces, ``y = ±a``; pressures vary as ``cos(m x)`` along both,
+    alike (symmetric modes) or opposite (antisymmetric ones), in a section across the sliding. At
+    the critical speed the temperature is steady, ``T ~ cosh(m y) cos(m x)`` or with ``sinh``, with
+    ``k dT/dy = mu v p`` at the faces. A harmonic temperature causes no stress in the section: the
+    displacements are ``α (1 + ν) ∫ (T + i T*) dz`` with its conjugate T*, and both kinds of modes
+    raise the faces by the same ``α (1 + ν) mu v p/(k m²)``. The pressure flattens the layer by
+    ``2 (1 - ν²) g p/(E m)``, with
+
+        g = sinh² ma/(sinh ma cosh ma + ma)    or    cosh² ma/(sinh ma cosh ma - ma)
+
+    from the stress functions ``y sinh m y``, ``cosh m y`` and the like (S. P. Timoshenko and J. N.
+    Goodier, Theory of Elasticity, sec. 24), and each half-plane by ``2 (1 - ν²) p/(E m)`` of its
+    own. Thick layers, g = 1, are half-planes. Symmetric modes then compress less than antisymmetric
+    ones bend, and are the first to grow.
+
+    Attributes
+    ----------
+    wave_length, thickness : float
+        ``2 π/m`` and 2 a [m].
+    young_modulus, poisson_ratio, expansion, conductivity, friction : float
+        E [Pa], ν, α [1/K] and k [W/(m K)] of the layer, and mu.
+    softness : float
+        ``(1 - ν²)/E`` of each half-plane, zero if they are rigid [1/Pa].
+    """
+
+    wave_length: float
+    thickness: float
+    young_modulus: float
+    poisson_ratio: float
+    expansion: float
+    conductivity: float
+    friction: float
+    softness: float = 0.0
+
+    @property
+    def symmetric(self) -> float:
+        """Critical speed of modes symmetric about the middle of the layer [m/s]."""
+        ma = pi * self.thickness / self.wave_length
+        return self._critical(sinh(ma) ** 2 / (sinh(ma) * cosh(ma) + ma))
+
+    @property
+    def antisymmetric(self) -> float:
+        """Critical speed of antisymmetric modes, which bend the layer [m/s]."""
+        ma = pi * self.thickness / self.wave_length
+        return self._critical(cosh(ma) ** 2 / (sinh(ma) * cosh(ma) - ma))
+
+    def _critical(self, flattening: float) -> float:
+        m, ν = 2 * pi / self.wave_length, self.poisson_ratio
+        flat = 2 * ((1 - ν**2) / self.young_modulus * flattening + self.softness) / m
+        lift = self.expansion * (1 + ν) * self.friction / (self.conductivity * m**2)
+        return flat / lift

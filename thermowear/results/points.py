@@ -147,7 +147,7 @@ class Modes:
 Points = TypeVar("Points")
 
 
-def part_of(points: Points, chosen: slice) -> Points:
-    """Range of the points of a table."""
+def part_of(points: Points, chosen: slice | np.ndarray) -> Points:
+    """Table of some of the points of a table, by their range or their indices."""
     columns = {name: getattr(points, name)[chosen] for name in table_of(points).columns}
     return replace(points, **columns)  # type: ignore[type-var]

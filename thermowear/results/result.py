@@ -182,18 +182,30 @@ class Result:
 
         Those of the points of several contacts end in the name of the contact.
         """
-        of_contacts = {
+        of_contacts: dict[str, Any] = {
             f"{table_of(points).stem}_{name}": part_of(points, own)
             for points in (self.interface, self.profile)
             for name, own in self.contacts.items()
         }
-        both = [] if self.contacts else [self.interface, self.profile]
-        found: list = [*both, self.history, self.heat, self.contact_history, self.modes]
+        both = [] if self.contacts else [self.interface, self.profile, self.modes]
+        if self.modes is not None:
+            of_contacts |= self._modes_of_contacts(self.modes)
+        found: list = [*both, self.history, self.heat, self.contact_history]
         if self.friction is not None:
             found += [self.friction.last, self.friction.rows, self.friction.cycles]
         if self.track is not None:
             found.append(self.track.last)
         return of_contacts | {table_of(content).stem: content for content in found if content}
+
+    def _modes_of_contacts(self, modes: Modes) -> dict[str, Modes]:
+        """Tables of the modes at each contact; empty for a pair."""
+        starts = np.arange(0, len(modes.mode), len(self.interface.s))[:, None]
+        return {
+            f"{table_of(modes).stem}_{name}": part_of(
+                modes, (starts + np.arange(own.start, own.stop)).ravel()
+            )
+            for name, own in self.contacts.items()
+        }
 
     def columns(self, name: str) -> dict[str, np.ndarray]:
         """Columns of a table in SI by their names in files, as `pandas.DataFrame` takes them.

@@ -30,6 +30,8 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
         from_key("holder_rotation_y_rad", "rotation of the holder about y"),
         _loads["tangential_displacement"],
         from_key("equilibrium_relative_error", "equilibrium error"),
+        from_key("force_balance_relative_error", "force balance error"),
+        from_key("moment_balance_relative_error", "moment balance error"),
     ),
     "Pressure and contact": (
         _history["max_pressure"],
@@ -48,6 +50,7 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
         from_key("rigid_wear_rotation_x_rad_per_s", "steady wear rotation about x"),
         from_key("rigid_wear_rotation_y_rad_per_s", "steady wear rotation about y"),
         from_key("wear_dissipation_W", "wear dissipation power"),
+        from_key("wear_volume_relative_error", "worn volume error", meaning="by rates in time"),
         _history["wear_volume_1"],
         _history["wear_volume_2"],
         from_key("wear_volume_m3", "worn volume", "mm³", "of a body, at all its contacts"),

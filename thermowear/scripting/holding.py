@@ -45,6 +45,8 @@ class SurfaceHolder:
         Direction along which it presses, the motion "z"; by default -y in a section, -z in space.
     name : str
         By default that of the first body.
+    reaction : SurfaceHolder or None
+        Holder that bears the force, as a caliper does that of its piston.
     """
 
     surface: BodySurface | Sequence[BodySurface]
@@ -61,6 +63,7 @@ class SurfaceHolder:
     surface_pressures: Mapping[BodySurface, Any] = field(default_factory=dict)
     direction: Sequence[float] | None = None
     name: str = ""
+    reaction: SurfaceHolder | None = None
 
     def __post_init__(self):
         for surface in self.surfaces:
@@ -79,6 +82,11 @@ class SurfaceHolder:
         """Surfaces that it holds."""
         given = self.surface
         return tuple(given) if isinstance(given, Sequence) else (given,)
+
+    @property
+    def own_name(self) -> str:
+        """Name for results and references, by default that of the first body."""
+        return self.name or self.surfaces[0].body.name
 
     @property
     def pressed(self) -> bool:
@@ -115,7 +123,8 @@ class SurfaceHolder:
         return Holder(
             load_direction=direction,
             bodies=tuple(bodies.index(surface.body) for surface in self.surfaces),
-            name=self.name or self.surfaces[0].body.name,
+            name=self.own_name,
+            reaction="" if self.reaction is None else self.reaction.own_name,
             pivot=pivot,
             point=pivot if self.point is None else self._position(self.point, "point", dim),
             free=tuple(self.free),

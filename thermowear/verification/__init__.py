@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from .cases.assembly.clutch_pack import clutch_pack
 from .cases.assembly.face_seal import face_seal
+from .cases.assembly.floating_caliper import floating_caliper
+from .cases.assembly.layer_instability import layer_instability
 from .cases.assembly.pad_disk_pad import pad_disk_pad
 from .cases.assembly.two_shoes import two_shoes
 from .cases.contact.contact_methods import methods_agree, patch
@@ -40,7 +42,8 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     reciprocating, moving_band, two_slabs, pressure_conductance, temperature_dependent,
     minimality, step_flux, braking_stop, sliding_rod, half_plane_instability, optimal_shape,
     ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face, coating, coated_bush,
-    glued_blocks, pad_disk_pad, clutch_pack, face_seal, two_shoes,
+    glued_blocks, pad_disk_pad, clutch_pack, face_seal, two_shoes, floating_caliper,
+    layer_instability,
 ), ())  # fmt: skip
 CASES = {
     id: identified(id, case, *runs)

@@ -229,6 +229,20 @@ class Conduction:
         parts = np.array([cooling_per_rise @ excess, into_prescribed, advective @ excess])
         return tuple(sum_over_ranks(self.spaces.comm, parts))
 
+    def into_bodies(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
+        """Net heat into the bodies by node, and the magnitudes of its parts, (2, n_owned) [W].
+
+        Nodal heat and that of the joints, less what `losses` counts; parameters as there. The sum
+        over a body vanishes if its heat balances.
+        """
+        lost = sum(self._per_rise) * rise  # the rise of the surroundings is in the heat
+        joined = self.joint_heat(rise, heat)
+        lost[self.fixed] += (heat + joined - multiply(self.conductivity, rise))[self.fixed]
+        rounding = _BALANCE_FLOOR * np.abs(self.conductivity.getDiagonal().getArray() * rise)
+        return np.array(
+            [heat + joined - lost, np.abs(heat) + np.abs(joined) + np.abs(lost) + rounding]
+        )
+
     def exchanged_heat(self, rise: np.ndarray, heat: np.ndarray, ambient: float = 0.0) -> float:
         """Sum of the magnitudes of heat through cooled and prescribed-temperature surfaces [W].
 

@@ -9,9 +9,11 @@ import re
 from collections.abc import Iterator
 
 from ...errors import CaseError
+from ...laws.motions import spans
 from ..values.section import Fault
 from .schema import AssemblyCase
-from .tables import SUPPORTS
+from .stability import check_stability
+from .tables import SUPPORTS, AssemblyHolderTable
 
 _NAME, _AT = re.compile(r"[\w-]+"), "_at_"
 """Names of contacts are parts of file names; a time follows the latter."""
@@ -133,6 +135,39 @@ def _holders(case: AssemblyCase) -> Iterator[Fault]:
         yield "holders", "nothing is pressed: one of them needs a force, a moment or an approach"
 
 
+def _reactions(case: AssemblyCase) -> Iterator[Fault]:
+    """Another holder that moves along the force bears it."""
+    for name, holder in case.holders.items():
+        if holder.reaction is None:
+            continue
+        path, other = f"holders.{name}.reaction", case.holders.get(holder.reaction)
+        if other is None:
+            known = ", ".join(one for one in case.holders if one != name)
+            yield path, f"found {holder.reaction!r}; must be another holder: {known or 'none'}"
+        elif other is holder:
+            yield path, "a holder cannot bear its own force; name another one"
+        elif holder.force is None and (holder.history is None or holder.history.force is None):
+            yield path, f"needs a force to bear: holders.{name}.force"
+        elif len(_direction(case, other)) == len(_direction(case, holder)) and not spans(
+            _translations(case, other), _direction(case, holder)
+        ):
+            text = "is not free along this force (free, direction), or has an approach"
+            yield path, f"the holder {holder.reaction!r} {text}"
+
+
+def _direction(case: AssemblyCase, holder: AssemblyHolderTable) -> tuple[float, ...]:
+    """Load direction, of any length."""
+    return holder.direction or case.geometry.press_direction(holder.surface[0])
+
+
+def _translations(case: AssemblyCase, holder: AssemblyHolderTable) -> list[tuple[float, ...]]:
+    """Directions of the translations along which a force moves a holder."""
+    along = _direction(case, holder)
+    axes = {name: tuple(float(i == k) for i in range(len(along))) for k, name in enumerate("xy")}
+    free = [along] if "z" in holder.free and holder.approach is None else []
+    return free + [axes[name] for name in holder.free if name in axes]
+
+
 def _analysis(case: AssemblyCase) -> Iterator[Fault]:
     if getattr(case.analysis, "frames", 0):
         yield "analysis.frames", "not supported in a model of several bodies"
@@ -235,4 +270,14 @@ def _heat(case: AssemblyCase) -> Iterator[Fault]:
         yield "heat.advection", text
 
 
-_CHECKS = (_contacts, _analysis, _holders, _motions, _wear, _materials, _heat)
+_CHECKS = (
+    _contacts,
+    _analysis,
+    _holders,
+    _reactions,
+    _motions,
+    _wear,
+    _materials,
+    _heat,
+    check_stability,
+)

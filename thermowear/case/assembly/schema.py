@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ...errors import CaseError
-from ..tables.analyses import Initial, Steady, Transient
+from ..tables.analyses import Initial, Stability, Steady, Transient
 from ..tables.conditions import HeatTable
 from ..tables.contact import InterfaceTable
 from ..tables.materials import Properties, cell_sets, located_material
@@ -49,7 +49,7 @@ class AssemblyCase(Section):
     motions: dict[str, BodyMotionTable] = {}
     wear: WearTable = WearTable()
     heat: HeatTable | None = None
-    analysis: Annotated[Initial | Steady | Transient, Field(discriminator="type")]
+    analysis: Annotated[Initial | Steady | Transient | Stability, Field(discriminator="type")]
 
     @model_validator(mode="after")
     def _cell_sets_as_parts(self):

@@ -88,6 +88,8 @@ class AssemblyHolderTable(Section):
     point, pivot : tuple of float or None
         Point of application of the force, by default the pivot, and centre of rotations, by default
         that of the geometry, else the origin [m].
+    reaction : str or None
+        Name of the holder that bears the force, as a caliper does that of its piston.
     moments : tuple of float or None
         Moments about x, y and z through the pivot; in a section the last one counts [N m].
     closing_moment : float or None
@@ -100,6 +102,7 @@ class AssemblyHolderTable(Section):
     direction: tuple[Number, ...] | None = None
     force: units.LeastForce | None = None
     approach: units.Length | None = None
+    reaction: str | None = None
     tangential_force: units.SignedForce | None = None
     moments: tuple[units.SignedMoment, units.SignedMoment, units.SignedMoment] | None = None
     closing_moment: units.SignedMoment | None = None

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
+from typing import TypeAlias
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from ..search.contacts import Contacts
 
 _ZERO_LENGTH = 1e-9
 """Relative length, by the largest vector, below which a vector is rounding noise."""
+
+Load: TypeAlias = "tuple[float, LoadHistory | None]"
+"""Generalised force with its time history."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +36,8 @@ class RigidMode:
         Indices of the bodies that move.
     history : LoadHistory or None
         Time history of the load.
+    reactions : tuple of (float, LoadHistory or None)
+        Generalised forces of other holders that press against this one, with their histories.
     """
 
     motion: RigidMotion
@@ -40,10 +46,16 @@ class RigidMode:
     dead: float = 0.0
     bodies: tuple[int, ...] = (0,)
     history: LoadHistory | None = None
+    reactions: tuple[Load, ...] = ()
 
     def __post_init__(self):
         if (self.load is None) == (self.amplitude is None):
             raise ValueError("holder: give either the load or the motion")
+
+    def load_by(self, factor: Callable[[LoadHistory | None], float]) -> float:
+        """Sum of all loads on a free motion, by the factor of the history of each [N or N m]."""
+        loads = [(self.load or 0.0, self.history), *self.reactions]
+        return sum(factor(history) * load for load, history in loads)
 
 
 @dataclass(frozen=True)
@@ -86,13 +98,12 @@ class RigidHolder:
     @property
     def load(self) -> np.ndarray:
         """Generalised forces of the holders on the free motions, shape (k,) [N or N m]."""
-        given = [mode.load for mode in self.rigid_modes if mode.load is not None]
-        return np.array(given, dtype=float)
+        return self.load_by(lambda history: 1.0)
 
-    @property
-    def histories(self) -> list[LoadHistory | None]:
-        """Time histories of these forces, k of them."""
-        return [mode.history for mode in self.rigid_modes if mode.load is not None]
+    def load_by(self, factor: Callable[[LoadHistory | None], float]) -> np.ndarray:
+        """These forces at a time, by the factors of their histories, shape (k,) [N or N m]."""
+        given = [mode.load_by(factor) for mode in self.rigid_modes if mode.load is not None]
+        return np.array(given, dtype=float)
 
     @property
     def dead(self) -> np.ndarray:

@@ -58,6 +58,8 @@ def _leaving_row(tableau, basis, entering: int, n: int, cover: int) -> int | Non
         return None
     ratio = tableau[rows, -1] / column[rows]
     rows = rows[ratio <= ratio.min() + 1e-13 * max(1.0, abs(ratio.min()))]
+    if len(rows) == 0:  # the numbers have overflowed
+        return None
     if len(rows) == 1:
         return int(rows[0])
     out = rows[basis[rows] == cover]

@@ -106,12 +106,15 @@ class WearRates:
 
     def by(self, law: Law, row: int, pressure: np.ndarray) -> np.ndarray:
         """Wear rate of a wearing body by a law, its own or that of one of its layers (n,) [m/s]."""
-        spread, local = self.spreads[row], law.value(LocalState(pressure, *self.states[row]))
-        local = self.factors[row] * local
+        spread, local = self.spreads[row], self.local(law, row, pressure)
         own = spread.share * local
         if spread.means is not None:
             own += spread.means.reach @ (spread.means.rows @ local)
         return own
+
+    def local(self, law: Law, row: int, pressure: np.ndarray) -> np.ndarray:
+        """Wear rate where a wearing body is in contact, before its distribution, (n,) [m/s]."""
+        return self.factors[row] * law.value(LocalState(pressure, *self.states[row]))
 
     def depths(self, pressure: np.ndarray) -> np.ndarray:
         """Depths worn in the time step, shape (n_wearing, n) [m]."""

@@ -22,11 +22,13 @@ _ALONG_A_LINE: dict[str, Callable[..., None]] = {
     "profile": curves.draw_profile,
     "wear": curves.draw_wear,
     "coating": curves.draw_coating,
+    "mode": draw_modes,
 }
 _OVER_A_SURFACE: dict[str, Callable[..., None]] = {
     "interface": maps.draw_interface_maps,
     "wear": maps.draw_wear_maps,
     "coating": maps.draw_coating_maps,
+    "mode": draw_modes,
 }
 _OF_THE_INTERFACE = ("wear", "coating")
 """Pictures drawn from ``interface.csv`` that have no table of their own."""
@@ -37,7 +39,6 @@ _OTHERS: dict[str, Callable[..., None]] = {
     "loads": over_time.draw_loads,
     "cycles": over_time.draw_cycles,
     "track": curves.draw_track,
-    "mode": draw_modes,
 }
 _TIMEOUT = 180.0  # seconds for the rendering process
 _ANIMATION_TIMEOUT = 1800.0  # seconds for the rendering process of an animation

@@ -9,6 +9,7 @@ from textwrap import fill
 import numpy as np
 
 from .. import tables
+from ..files import name_at, picture
 from .maps import is_surface, triangulated
 from .panels import abscissa, column, label_coordinates, panels
 
@@ -16,12 +17,16 @@ _TITLE = 38  # characters per line of a title
 _LEVELS = np.linspace(-1.0, 1.0, 21)
 
 
-def draw_modes(folder: Path) -> None:
-    """Draw ``mode.png``: the fastest growing mode, and the modes at critical speeds."""
-    data = tables.read(folder / "mode.csv")
+def draw_modes(folder: Path, contact: str = "") -> None:
+    """Draw ``mode.png``: the fastest growing mode, and the modes at critical speeds.
+
+    Of one contact of several bodies: the largest value 1 of a mode may be at another one.
+    """
+    data = tables.read(folder / name_at("mode", None, contact))
     modes = [data.rows(data["mode"] == number) for number in np.unique(data["mode"])]
     if modes:
-        (_draw_maps if is_surface(folder) else _draw_curves)(modes, folder / "mode.png")
+        draw = _draw_maps if is_surface(folder) else _draw_curves
+        draw(modes, folder / picture("mode", contact))
 
 
 def _draw_curves(modes: list[tables.TableColumns], path: Path) -> None:

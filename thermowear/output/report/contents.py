@@ -12,6 +12,7 @@ import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,15 @@ import numpy as np
 from ...errors import CaseError
 from ...results.quantity import TABLES, Quantity, from_key
 from ...results.summary_keys import of_key
-from ..files import PICTURES, is_report, name_at, states, write_text
+from ..files import (
+    PICTURES,
+    contacts_of,
+    is_report,
+    name_at,
+    picture,
+    states,
+    write_text,
+)
 from ..tables import TableColumns, read
 from .figures import NOTHING, balances, key_figures, number, table_lines, verdict
 
@@ -146,12 +155,14 @@ def _toml(path: Path) -> tuple[str, dict[str, Any]]:
 
 
 def _pictures(folder: Path):
-    for name, caption in PICTURES.items():
-        path = folder / f"{name}.png"
+    contacts = dict.fromkeys(["", *contacts_of(folder)])
+    for (name, caption), contact in product(PICTURES.items(), contacts):
+        path = folder / picture(name, contact)
         content = path.read_bytes() if path.is_file() else b""
         if content.startswith(_PNG):
             encoded = base64.b64encode(content).decode("ascii")
-            yield {"name": name, "caption": caption, "data": encoded}
+            where = f"Contact {contact}: {caption[0].lower()}{caption[1:]}" if contact else caption
+            yield {"name": path.stem, "caption": where, "data": encoded}
 
 
 def _tables(folder: Path, summary: dict[str, Any]):

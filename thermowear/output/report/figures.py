@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from ...balances import ALLOWED, BALANCES, holds
+from ...balances import ALLOWED, BALANCES, errors_of, holds
 from ...results.quantity import multiple, split_key
 from ...results.summary_keys import GROUPS, OTHER, PHASES, group_of, of_key
 
@@ -64,7 +64,24 @@ def balances(summary: dict[str, Any]) -> list[Figure]:
             found.append(Figure(kept.name, f"{text} (allowed {ALLOWED:g})", mark=mark))
         elif key in summary:
             found.append(Figure(kept.name, NOTHING))
-    return found
+    return found + _worst_of_bodies(summary)
+
+
+def _worst_of_bodies(summary: dict[str, Any]) -> list[Figure]:
+    """Largest balance error of each kind among several bodies."""
+    worst: dict[str, tuple[float, str]] = {}
+    for where, kept, error in errors_of(summary):
+        if where:
+            size = abs(error) if math.isfinite(error) else math.inf
+            worst[kept.name] = max(worst.get(kept.name, (-1.0, "")), (size, where))
+    return [
+        Figure(
+            f"{name}, worst{where}",
+            f"{size:.1e} (allowed {ALLOWED:g})" if size < math.inf else NOTHING,
+            mark="good" if holds(size) else "bad",
+        )
+        for name, (size, where) in worst.items()
+    ]
 
 
 def figure_text(key: str, value: Any, entry: str = "") -> str:

@@ -24,7 +24,8 @@ from ...contact.operators.traces import face_traces, gap_trace, vector_trace
 from ...model.conditions import Heat
 from ...parallel import sum_over_ranks
 from ..heat.friction_heat import TemperatureField
-from ..interface.body_state import BodyState, ContactState
+from ..interface.body_state import BodyState
+from ..interface.equilibrium import ContactState
 from ..system.building import supports
 from ..system.rigid_modes import fluid_pressure, surface_loads
 from ..system.system import System

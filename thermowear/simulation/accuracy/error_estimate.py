@@ -28,7 +28,7 @@ from ...contact.solvers.enriched_pressure import enriched_pressure
 from ...errors import CaseError, ComputationError
 from ...model.analyses import Analysis
 from ...results import InterfaceFields
-from ..interface.body_state import ContactState
+from ..interface.equilibrium import ContactState
 from ..interface.steady import principle
 from ..results.recording import Snapshot
 from ..system.building import sliding_contact

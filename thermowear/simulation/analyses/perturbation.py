@@ -125,9 +125,12 @@ class PerturbedContact:
 
     @cached_property
     def _elastic(self) -> np.ndarray:
-        """Compliance A of the bodies and of the soft layer between the faces."""
-        contact = self._system.contact
-        return contact.compliance + self._system.model.interface.compliance * contact.mass
+        """Compliance A of the bodies and of the soft layers between the faces."""
+        system, contact = self._system, self._system.contact
+        if len(system.model.interfaces) == 1:
+            return contact.compliance + system.model.interface.compliance * contact.mass
+        soft = contact.weighted.T @ scaled(system.softness, contact.basis)
+        return contact.compliance + dense(soft)
 
     @cached_property
     def _thermal(self) -> np.ndarray:

@@ -16,7 +16,7 @@ from ..interface.condensed_method import CondensedMethod
 from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.steady import steady_state
 from ..results.recording import Snapshot, record, snapshot_at
-from ..results.summary import conclude
+from ..results.summary import conclude, merged
 from ..runtime.observer import Observer
 from ..system.system import System
 from .growth_model import PerturbationMode
@@ -126,7 +126,7 @@ def stability(system: System, observer: Observer) -> tuple[Snapshot, Result]:
         else:
             extra, modes = _keys(system, static[0] if static else None, None, None, None), []
     extra["static_speed_factors"] = [mode.factor for mode in static]
-    summary = unperturbed.summary | extra
+    summary = merged(unperturbed.summary, extra)
     return end, replace(unperturbed, summary=summary, modes=_table(system, modes + static))
 
 
@@ -157,21 +157,23 @@ def _keys(
     fastest: PerturbationMode | None,
     unworn: PerturbationMode | None,
 ) -> dict:
-    """Summary entries of a stability analysis."""
-    motion = system.model.motion
-    given = {
-        "critical_speed_factor": 1.0,
-        "critical_speed": motion.velocity,
-        "critical_angular_velocity": motion.angular_velocity,
-    }
-    units = ("", "_m_per_s", "_rad_per_s")
-    found: dict[str, float | None] = {}
+    """Summary entries of a stability analysis; critical speeds of several bodies by contact."""
+    found: dict[str, Any] = {}
+    speeds: dict[str, dict[str, float | None]] = {}
     for which, onset in (("", critical), ("_with_wear", with_wear)):
         factor = onset.factor if onset else None
-        for (name, value), unit in zip(given.items(), units, strict=True):
-            known = None if factor is None or value is None else factor * abs(value)
-            found[f"{name}{which}{unit}"] = known
+        found[f"critical_speed_factor{which}"] = factor
         found[f"critical_frequency{which}_rad_per_s"] = onset.rate.value.imag if onset else None
+        for one in system.model.interfaces:
+            own = speeds.setdefault(one.name, {})
+            for name, value in (
+                (f"speed{which}_m_per_s", one.motion.velocity),
+                (f"angular_velocity{which}_rad_per_s", one.motion.angular_velocity),
+            ):
+                known = None if factor is None or value is None else factor * abs(value)
+                own[f"critical_{name}"] = known
+    by_contact: dict[str, Any] = {"contacts": speeds}
+    found |= speeds[""] if system.model.is_pair else by_contact
     for which, mode in (("", fastest), ("_without_wear", unworn)):
         found[f"growth_rate{which}_per_s"] = mode.rate.value.real if mode else None
         found[f"growth_frequency{which}_rad_per_s"] = mode.rate.value.imag if mode else None

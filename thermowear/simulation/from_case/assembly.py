@@ -212,5 +212,6 @@ def _holder(case: AssemblyCase, name: str, table: AssemblyHolderTable) -> dict:
         "moments": table.moments or (0.0, 0.0, 0.0),
         "closing_moment": table.closing_moment,
         "history": None if history is None else history.loads,
+        "reaction": table.reaction or "",
         **maxima,
     }

@@ -37,6 +37,7 @@ _ROOM = 5.0
 """Upper limit of the allowed fraction, as a multiple of the automatic one."""
 _TILT = 0.1
 """Weight of the element tilt: depth difference of its ends relative to its size."""
+
 Principle = Callable[[System], SteadyState | None]
 """Steady state that a system approaches; None if there is none."""
 

@@ -13,7 +13,8 @@ from ...contact.operators.heat_exchange import InterfaceHeat
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem
-from .heat_steps import HeatBalance, HeatStep, HeatSteps, StoredHeat
+from . import heat_by_body
+from .heat_steps import ROUNDING, HeatBalance, HeatStep, HeatSteps, StoredHeat
 from .varying_heat import VaryingHeatSteps
 
 _FIRST_DEPTH = 1e-3
@@ -39,11 +40,14 @@ class TemperatureField:
         Nodal temperature rise over the ambient [K].
     error : float
         Relative error of the heat balance.
+    errors : list of float
+        Those of each body; empty for a pair.
     """
 
     faces: ThermalState
     rise: np.ndarray
     error: float
+    errors: list[float]
 
 
 @dataclass(frozen=True)
@@ -104,7 +108,8 @@ class FrictionHeat:
         rise = np.where(conduction.fixed, conduction.prescribed, self._thermal.initial)
         baseline = self.steps.operators.baseline(rise)
         largest = max(float(np.abs(baseline.rise).max()), self.steps.largest(rise))
-        stored = StoredHeat(rise, conduction.stored_heat(rise), np.zeros(3), largest)
+        nothing = np.zeros(3 + 2 * heat_by_body.tracked_bodies(self._system))
+        stored = StoredHeat(rise, conduction.stored_heat(rise), nothing, largest)
         return InitialHeat(stored, baseline)
 
     def given(self, stored: StoredHeat) -> InitialHeat:
@@ -128,7 +133,9 @@ class FrictionHeat:
         content = self._thermal.conduction.stored_heat(rise)
         same = replace(stored, rise=rise, content=content)
         taken = former._balance(stored).stored - self._balance(same).stored
-        return replace(same, turnover=stored.turnover + np.array([0.0, taken, abs(taken)]))
+        each = self._gains(same) - former._gains(stored)
+        flows = np.array([0.0, taken, abs(taken), *each, *np.abs(each)])
+        return replace(same, turnover=stored.turnover + flows)
 
     def steady(self, conditions: InterfaceConditions, pressure: np.ndarray) -> TemperatureField:
         """Steady temperatures under a pressure (n,) [Pa]."""
@@ -142,11 +149,22 @@ class FrictionHeat:
         scale = max(made + load.magnitude, conduction.exchanged_heat(rise, heat, load.ambient))
         if made + load.magnitude == 0.0:  # the turnover may be at rounding level
             scale = max(scale, conduction.balance_scale(rise))
-        return TemperatureField(faces, rise, relative(lost - made - load.prescribed, scale))
+        error = relative(lost - made - load.prescribed, scale)
+        net = heat_by_body.into_bodies(self._system, self._thermal, faces, rise, load)
+        return TemperatureField(faces, rise, error, heat_by_body.errors(*net))
 
     def transient(self, stored: StoredHeat, faces: ThermalState) -> TemperatureField:
         """Transient temperatures, with the error of the heat balance since the start."""
-        return TemperatureField(faces, stored.rise, self._balance(stored).error)
+        net, sizes = np.split(stored.turnover[3:], 2)
+        gains, before = self._gains(stored), np.abs(self.initial.stored.content)[None]
+        sizes = sizes + np.abs(gains) + ROUNDING * heat_by_body.of_bodies(self._system, before)[0]
+        errors = heat_by_body.errors(net - gains, sizes)
+        return TemperatureField(faces, stored.rise, self._balance(stored).error, errors)
+
+    def _gains(self, stored: StoredHeat) -> np.ndarray:
+        """Heat stored in each body since the start, (n_bodies,) [J]; (0,) for a pair."""
+        gained = (stored.content - self.initial.stored.content)[None]
+        return heat_by_body.of_bodies(self._system, gained)[0]
 
     def _balance(self, stored: StoredHeat) -> HeatBalance:
         return stored.balance(self.initial.stored, self._system.comm)

@@ -24,8 +24,9 @@ from ..system.system import System
 from ..system.thermal_loads import ThermalLoad
 from ..system.thermal_system import ThermalSystem
 from .exchange_cache import ExchangeCache, KnownExchange, thermal_distortion
+from .heat_by_body import into_bodies
 
-_ROUNDING = 1e-3
+ROUNDING = 1e-3
 """Least scale of the heat balance, relative to the initial heat content (rounding)."""
 
 
@@ -64,9 +65,9 @@ class StoredHeat:
         Nodal temperature rise over the ambient [K].
     content : ndarray, shape (n_owned,)
         Nodal heat content over the ambient [J].
-    turnover : ndarray, shape (3,)
-        Cumulated heat input by friction and through surfaces, heat lost, and sum of the magnitudes
-        of all heat in and out [J].
+    turnover : ndarray, shape (3 + 2 n_bodies,)
+        Cumulated heat input by friction and through surfaces, heat lost, sum of the magnitudes of
+        all heat in and out; of several bodies also those of `heat_by_body.into_bodies` [J].
     largest : float
         Largest magnitude so far of the rise of the faces; also inside the bodies where friction is
         not the only heat source [K].
@@ -91,8 +92,8 @@ class StoredHeat:
         gained, before = self.content - initial.content, np.abs(initial.content).sum()
         sums = np.array([gained.sum(), np.abs(gained).sum(), before])
         gain, shifted, had = (float(heat) for heat in sum_over_ranks(comm, sums))
-        made, lost, exchanged = (float(heat) for heat in self.turnover)
-        return HeatBalance(made, gain, lost, max(exchanged, shifted, _ROUNDING * had))
+        made, lost, exchanged = (float(heat) for heat in self.turnover[:3])
+        return HeatBalance(made, gain, lost, max(exchanged, shifted, ROUNDING * had))
 
 
 class HeatOperators:
@@ -266,13 +267,15 @@ class HeatSteps:
         conduction, face, load = self._thermal.conduction, self._thermal.face, heat.load
         rise = heat.rise(faces)
         content = conduction.stored_heat(rise)
-        nodal = face.nodal_heat(faces, bath=False) + load.heat - (content - before.content) / step
+        gained = (content - before.content) / step
+        nodal = face.nodal_heat(faces, bath=False) + load.heat - gained
         lost = sum(conduction.losses(rise, nodal, load.ambient))
         made = float(face.weights @ friction_heat)
         exchanged = made + load.magnitude + conduction.exchanged_heat(rise, nodal, load.ambient)
         largest = max(before.largest, float(np.abs(faces.rise).max()), self.largest(rise))
-        turnover = before.turnover + step * np.array([made + load.prescribed, lost, exchanged])
-        return StoredHeat(rise, content, turnover, largest)
+        each = into_bodies(self._system, self._thermal, faces, rise, load, gained)
+        flows = np.array([made + load.prescribed, lost, exchanged, *each.ravel()])
+        return StoredHeat(rise, content, before.turnover + step * flows, largest)
 
     def largest(self, rise: np.ndarray) -> float:
         """Largest rise inside the bodies with other heat sources, else 0 [K]; every rank calls.

@@ -8,13 +8,12 @@ from dataclasses import replace
 import numpy as np
 
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
-from ...contact.wear.layered_step import LayeredStep
 from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat, friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
-from .body_state import ContactState
 from .condensed_method import CondensedMethod
 from .contact_solver import ContactSolution, ContactSolver
+from .equilibrium import ContactState
 from .fixed_point import Trial, self_consistent
 from .full_method import FullMethod
 from .growing_edge import GrowingEdge
@@ -79,8 +78,10 @@ class InterfaceProblem(WearProblem):
 
     def start(self) -> InterfaceState:
         if self.heat is None or not self.stores_heat:
-            return self.unworn()
-        return self._at_temperatures(self._unworn, self.heat.initial, 0.0)
+            found = self.unworn()
+        else:
+            found = self._at_temperatures(self._unworn, self.heat.initial, 0.0)
+        return replace(found, removed=self._wear.nothing)
 
     def take_over(
         self, former: InterfaceProblem, state: InterfaceState, worn, rise, time: float
@@ -111,7 +112,7 @@ class InterfaceProblem(WearProblem):
             assert rise is not None
             stored = self.heat.take_over(former.heat, state.stored, rise)
             found = self._at_temperatures(worn, self.heat.given(stored), time, edge)
-        return replace(found, peak=state.largest, pointwise=edge)
+        return replace(found, peak=state.largest, pointwise=edge, removed=state.removed)
 
     def _at_temperatures(self, worn, heat: InitialHeat, time, pointwise=None) -> InterfaceState:
         """Contact at given temperatures."""
@@ -154,8 +155,9 @@ class InterfaceProblem(WearProblem):
             nonlocal found
             found = self._solve(before.worn, conditions, heat, edge, found, step)
             faces = heat.faces(conditions, found.pressure) if heat is not None and faced else None
-            grown = self._in_step(before.worn, conditions, step).depths(found.pressure)
-            return InterfaceState(before.worn + grown, found, before.peak, faces, pointwise=edge)
+            rates = self._rates(conditions, step)
+            worn, removed = self._wear.after(before, rates, found.pressure)
+            return InterfaceState(worn, found, before.peak, faces, None, edge, removed)
 
         if model.depends_on_state:
             closed = guess.pressure > 0
@@ -172,8 +174,9 @@ class InterfaceProblem(WearProblem):
     def prolonged(self, before: InterfaceState, after: InterfaceState, part, step, time):
         found = before.towards(after, part)
         if self._wear.layered:
-            wear = self._in_step(before.worn, self.conditions(after, time), part * step)
-            found = replace(found, worn=before.worn + wear.depths(after.pressure))
+            rates = self._rates(self.conditions(after, time), part * step)
+            worn, removed = self._wear.after(before, rates, after.pressure)
+            found = replace(found, worn=worn, removed=removed)
         return found
 
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
@@ -190,11 +193,6 @@ class InterfaceProblem(WearProblem):
         """Wear rates under given conditions, for wear in a time step [s]."""
         laws, spreads = self._wear.laws, self._wear.spreads
         return WearRates(laws, spreads, conditions.wear, conditions.states, step)
-
-    def _in_step(self, worn: np.ndarray, conditions: InterfaceConditions, step: float):
-        """Wear in a time step [s] from given depths (n_wearing, n)."""
-        rates = self._rates(conditions, step)
-        return LayeredStep(rates, worn) if self._wear.layered else rates
 
     def _solve(
         self,
@@ -223,7 +221,8 @@ class InterfaceProblem(WearProblem):
         if step == 0.0 or not self._wear.laws:
             return solve(self._rigid.point, self._rigid, start)
         start = start or solve(self._rigid.point, self._rigid, None)
-        return newton_with_wear(solve, self._in_step(worn, conditions, step), start)
+        wear = self._wear.in_step(worn, self._rates(conditions, step))
+        return newton_with_wear(solve, wear, start)
 
     def contact_state(self, state: InterfaceState, time: float) -> ContactState:
         """Contact loads of a state on the bodies; every rank calls."""

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ...contact.wear.implicit_step import WearRates
+from ...contact.wear.layered_step import LayeredStep
 from ...laws.layered_wear import layers_of
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
+from .sdirk import InterfaceState
 
 _LEVEL = 1e-3
 """Largest variation of the depth, relative to it, of points that pass a border at once."""
@@ -24,6 +26,8 @@ class InterfaceWear:
         Distributions of the wear of these bodies.
     layered : bool
         True if a face has layers.
+    nothing : ndarray or None, shape (n_wearing, n_interfaces)
+        Volumes worn off at the start; None for a pair.
     """
 
     def __init__(self, system: System):
@@ -31,6 +35,37 @@ class InterfaceWear:
         self._layers = [layers_of(law) for law in self.laws]
         self._ranges = system.contacts.ranges
         self.layered = any(layers.thickness for layers in self._layers)
+        self.nothing: np.ndarray | None = None
+        if self.laws and not system.model.is_pair:
+            self.nothing = np.zeros((len(self.laws), len(self._ranges)))
+            self._areas, self._weights = system.worn_areas[list(system.laws)], system.weights
+
+    def in_step(self, worn: np.ndarray, rates: WearRates) -> WearRates | LayeredStep:
+        """Wear in the time step of some rates, from given depths (n_wearing, n)."""
+        return LayeredStep(rates, worn) if self.layered else rates
+
+    def after(
+        self, before: InterfaceState, rates: WearRates, pressure: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray | None]:
+        """Depths, and volumes worn off, after the time step of some rates at a pressure (n,)."""
+        grown = self.in_step(before.worn, rates).depths(pressure)
+        removed = before.removed
+        if removed is not None:
+            removed = removed + self._removed(rates, grown, pressure)
+        return before.worn + grown, removed
+
+    def _removed(self, rates: WearRates, grown: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+        """Volumes worn off by the rates where the faces touch, (n_wearing, n_interfaces) [m³].
+
+        Layers under a track wear by the depth of the whole track: their volume is that of the
+        depths ``grown`` (n_wearing, n).
+        """
+        if self.layered:
+            volumes = self._areas * grown
+        else:
+            local = [rates.local(law, row, pressure) for row, law in enumerate(self.laws)]
+            volumes = rates.step * self._weights * np.array(local)
+        return np.column_stack([volumes[:, own].sum(axis=1) for own in self._ranges])
 
     def final_rates(self, conditions: InterfaceConditions) -> WearRates:
         """Wear rates of faces that have lost all their layers."""

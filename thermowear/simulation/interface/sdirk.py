@@ -36,6 +36,8 @@ class InterfaceState:
         Stored heat in transient conduction; None if conduction is quasi-steady.
     pointwise : ndarray of bool or None, shape (n,)
         Points at the edge of the wear with pointwise contact, see `contact.wear.wear_edge`.
+    removed : ndarray or None, shape (n_wearing, n_interfaces)
+        Volume worn off according to the rates at the contacts [m³]; of several bodies.
     """
 
     worn: np.ndarray
@@ -44,6 +46,7 @@ class InterfaceState:
     faces: ThermalState | None = None
     stored: StoredHeat | None = None
     pointwise: np.ndarray | None = None
+    removed: np.ndarray | None = None
 
     @property
     def pressure(self) -> np.ndarray:
@@ -69,19 +72,21 @@ class InterfaceState:
 
     def towards(self, other: InterfaceState, part: float) -> InterfaceState:
         """Interpolate wear and stored heat linearly (or extrapolate) to another state."""
-        stored = self.stored
+        stored, removed = self.stored, self.removed
         if stored is not None and other.stored is not None:
             stored = stored.towards(other.stored, part)
+        if removed is not None and other.removed is not None:
+            removed = removed + part * (other.removed - removed)
         worn = self.worn + part * (other.worn - self.worn)
         of_other = other.contact, self.largest, other.faces
-        return InterfaceState(worn, *of_other, stored, self.pointwise)
+        return InterfaceState(worn, *of_other, stored, self.pointwise, removed)
 
 
 class WearProblem(ABC):
-    """Contact of wearing bodies: interface to time integration, in place or averaged over a cycle.
+    """Contact of wearing bodies, as time integration sees it; in place or averaged over a cycle.
 
-    Wear depths have shape (n_rows, n); the gap opens by their sum over the rows. The defaults are
-    those of isothermal contact without pointwise conditions.
+    Wear depths have shape (n_rows, n), and add up to the gap. The defaults are those of isothermal
+    contact without pointwise conditions.
     """
 
     @abstractmethod
@@ -110,10 +115,8 @@ class WearProblem(ABC):
         step, time : float
             Size and end of the step [s].
         guess : InterfaceState
-            Initial guess of the result.
         last : bool, optional
-            False if the step continues from the result: it then lacks temperatures of the faces on
-            which nothing depends.
+            False if the step goes on from the result, without face temperatures that nothing needs.
 
         Raises
         ------
@@ -128,7 +131,7 @@ class WearProblem(ABC):
         before, after : InterfaceState
             States at the beginning and at the end of the stage.
         part : float
-            Duration, relative to the size of the stage.
+            Duration relative to the stage.
         step, time : float
             Size and end of the stage [s].
         """
@@ -143,10 +146,8 @@ class WearProblem(ABC):
 
         Parameters
         ----------
-        before : InterfaceState
-            State at the beginning of the step.
-        one, other : InterfaceState
-            States at the end of the step.
+        before, one, other : InterfaceState
+            States at the beginning, and two at the end of the step.
         """
         return float(np.abs(one.pressure - other.pressure).max())
 
@@ -202,9 +203,8 @@ def advance(
 
     The rates of the first stage act for a part 1 - γ of the step, then those of the second for a
     part γ. With layers, both are exact in the depth (see `laws.layered_wear`), and the order is the
-    same. The pressure has a kink in time when a point passes a border. Only one of two half steps
-    contains it, and makes a quarter of the error of the whole step, as in smooth steps: the
-    estimate of `advance_with_error` holds there, too.
+    same. Where a point passes a border, the pressure has a kink in one of two half steps, which
+    makes a quarter of the error of the whole one: the estimate of `advance_with_error` holds.
     """
     first = problem.stage(state, _γ * step, time + _γ * step, state, last=False)
     before = problem.prolonged(state, first, (1 - _γ) / _γ, _γ * step, time + _γ * step)
@@ -286,7 +286,7 @@ def next_step(
     ----------
     step, error, tolerance : float
     former : tuple of float, optional
-        Size and error of the preceding step; without them there is no prediction.
+        Size and error of the preceding step; no prediction without them.
     """
     if error == 0.0:
         return 5.0 * step

@@ -11,7 +11,7 @@ from ..heat.friction_heat import friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.fluid import parted_by_fluid
 from ..system.system import System
-from .body_state import ContactState
+from .equilibrium import ContactState
 from .fixed_point import Trial, self_consistent
 
 _NONE = (

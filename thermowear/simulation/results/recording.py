@@ -5,7 +5,7 @@ Fields of the bodies are sampled on a fine grid in every cell and gathered on ra
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import ufl
@@ -25,7 +25,8 @@ from ...results import (
     Profile,
     WornTrack,
 )
-from ..interface.body_state import BodyState, ContactState, body_state
+from ..interface.body_state import BodyState, body_state
+from ..interface.equilibrium import ContactState
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
 from ..system.rigid_modes import fluid_pressure
@@ -55,6 +56,8 @@ class Snapshot:
         Stick-slip state of a fretting analysis.
     track : WornTrack or None
         Worn track of a reciprocating analysis.
+    removed : ndarray or None, shape (n_wearing, n_interfaces)
+        Volumes worn off by the rates in time, see `InterfaceState` [m³].
     """
 
     system: System
@@ -64,6 +67,7 @@ class Snapshot:
     interface: InterfaceFields
     friction: FrictionInterface | None = None
     track: WornTrack | None = None
+    removed: np.ndarray | None = None
 
     @property
     def displacement(self) -> np.ndarray:
@@ -109,7 +113,8 @@ def snapshot_at(problem: InterfaceProblem, state: InterfaceState, time: float) -
     """Contact and bodies in a state of an interface problem at a time [s]; every rank calls."""
     system, contact = problem.system, problem.contact_state(state, time)
     motions = system.motions(state.contact.motion)
-    return snapshot(system, contact, motions, state.by_body(system.laws))
+    found = snapshot(system, contact, motions, state.by_body(system.laws))
+    return replace(found, removed=state.removed)
 
 
 def record(

@@ -15,8 +15,9 @@ from ...model.interface import Interface
 from ...model.model import Model
 from ...results import Result
 from ..system.fluid import fluid_forces
-from ..system.rigid_modes import applied, guides
+from ..system.rigid_modes import guides, loads_on
 from ..system.system import System
+from .body_balances import balances, friction_torques
 from .coatings import layer_volumes
 from .recording import Snapshot, profile
 
@@ -67,11 +68,14 @@ def summarise(end: Snapshot, time: float) -> dict:
     }
     turned = replace(end, system=system.with_friction(end.contact.conditions.friction))
     interfaces = [_of_interface(turned, index) for index in range(len(model.interfaces))]
-    holders = [_of_holder(turned, index) for index in range(len(model.holders))]
+    holders = [_of_holder(turned, index, time) for index in range(len(model.holders))]
     if model.is_pair:
         return size | interfaces[0] | holders[0] | state
+    bodies = [_of_body(model, k, interfaces) for k in range(len(model.bodies))]
+    whole, each = balances(turned, [body["wear_volume_m3"] for body in bodies])
     return size | {
         **state,
+        **whole,
         "max_pressure_Pa": float(end.contact.pressure.max()),
         "friction_power_W": sum(found["friction_power_W"] for found in interfaces),
         "wear_dissipation_W": sum(found["wear_dissipation_W"] for found in interfaces),
@@ -81,7 +85,8 @@ def summarise(end: Snapshot, time: float) -> dict:
         },
         "holders": dict(zip((h.name for h in model.holders), holders, strict=True)),
         "bodies": {
-            body.name: _of_body(model, k, interfaces) for k, body in enumerate(model.bodies)
+            body.name: found | errors
+            for body, found, errors in zip(model.bodies, bodies, each, strict=True)
         },
     }
 
@@ -132,8 +137,8 @@ def _of_interface(end: Snapshot, index: int) -> dict:
     }
 
 
-def _of_holder(end: Snapshot, index: int) -> dict:
-    """Position of a holder, and the reactions of its guides."""
+def _of_holder(end: Snapshot, index: int, time: float) -> dict:
+    """Position of a holder, and the reactions of its guides, at a time [s]."""
     system, holder = end.system, end.system.model.holders[index]
     motion, direction = end.motions[index], np.array(holder.load_direction)
     turned = zip(_ROTATIONS.items(), motion.rotation, strict=True)
@@ -141,22 +146,22 @@ def _of_holder(end: Snapshot, index: int) -> dict:
         "approach_m": float(motion.at(np.array(holder.pivot)) @ direction),
         "guide_force_N": None,
         "rigid_wear_velocity_m_per_s": None,
-        **_guide_reactions(system, holder, end.contact.pressure),
+        **_guide_reactions(system, holder, end.contact.pressure, time),
         **{key: float(angle) for (name, key), angle in turned if name in holder.free},
     }
 
 
 def _of_body(model: Model, index: int, interfaces: list[dict]) -> dict:
-    """Volume worn from a body and heat into it, at all of its interfaces."""
+    """Volume worn from a body, heat into it and friction torque at all of its interfaces."""
     sides = [
         (found, interface.bodies.index(index) + 1)
         for found, interface in zip(interfaces, model.interfaces, strict=True)
         if index in interface.bodies
     ]
     result = {"wear_volume_m3": sum(found[f"wear_volume_{side}_m3"] for found, side in sides)}
-    if model.heat is not None:
+    if all(f"contact_heat_{side}_W" in found for found, side in sides):
         result["contact_heat_W"] = sum(found[f"contact_heat_{side}_W"] for found, side in sides)
-    return result
+    return result | friction_torques(model, index, interfaces)
 
 
 def _friction(interface: Interface, friction: np.ndarray, force: np.ndarray) -> dict[str, float]:
@@ -220,15 +225,15 @@ def conclude(end: Snapshot, extra: dict, time: float = 0.0, **recorded) -> tuple
     **recorded
         Further attributes of the result, such as its histories.
     """
-    summary = _merged(summarise(end, time), extra)
+    summary = merged(summarise(end, time), extra)
     contacts = end.system.ranges_by_name
     return end, Result(end.interface, profile(end), summary, contacts=contacts, **recorded)
 
 
-def _merged(one: dict, other: dict) -> dict:
+def merged(one: dict, other: dict) -> dict:
     """Union of two tables and of the tables in them; the other's values replace those of one."""
     shared = {
-        key: _merged(one[key], table)
+        key: merged(one[key], table)
         for key, table in other.items()
         if isinstance(table, dict) and isinstance(one.get(key), dict)
     }
@@ -248,7 +253,9 @@ def _torque(
     return float(pairing.weights @ (friction * np.linalg.norm(arms, axis=1)))
 
 
-def _guide_reactions(system: System, holder: Holder, pressure: np.ndarray) -> dict[str, float]:
+def _guide_reactions(
+    system: System, holder: Holder, pressure: np.ndarray, time: float
+) -> dict[str, float]:
     """Guide reactions on the bodies of a holder along its constrained motions [N, N m].
 
     For the whole body: the forces between the halves of a symmetric section cancel.
@@ -256,7 +263,9 @@ def _guide_reactions(system: System, holder: Holder, pressure: np.ndarray) -> di
     model, reactions = system.model, {}
     for name, motion in guides(model.kinematics, holder).items():
         if name not in holder.free:
-            mode, load = RigidMode(motion, load=0.0, bodies=holder.bodies), applied(holder, motion)
+            mode, load = RigidMode(motion, load=0.0, bodies=holder.bodies), 0.0
+            for part, history in loads_on(model.holders, holder, motion):
+                load += part if history is None else part * history.factor_at(time)
             response = hold(system.contacts, system.traction_direction, [mode]).force_response
             dead = system.dead_resultant(motion)[list(holder.bodies)].sum()
             reaction = float(system.weights @ (pressure * response[:, 0])) - load - float(dead)

@@ -10,6 +10,7 @@ import numpy as np
 from ...contact.operators.heat import ThermalState
 from ...errors import ComputationError
 from ...laws.interfaces import Law, LocalState
+from ...laws.time_course import LoadHistory
 from .system import System
 
 _SETTLED = 1e-10
@@ -140,14 +141,16 @@ class ConditionModel:
             Wear depths of the wearing bodies, by default 0 [m].
         """
         holder = self._system.holder
-        histories = holder.histories
-        pressed = [1.0 if given is None else _part(given.factor_at(time)) for given in histories]
+
+        def pressed(given: LoadHistory | None) -> float:
+            return 1.0 if given is None else _part(given.factor_at(time))
+
         speed, temperatures = self._speed(time), self._temperatures(faces)
         at = LocalState(pressure, speed, (temperatures[0] + temperatures[1]) / 2)
         friction = self._friction(time, at)
         wear, temperature, worn = self._wear(temperatures, depth, pressure, speed, friction)
         return InterfaceConditions(
-            load=np.array(pressed) * holder.load + holder.dead,
+            load=holder.load_by(pressed) + holder.dead,
             speed=speed,
             friction=friction,
             wear=wear,

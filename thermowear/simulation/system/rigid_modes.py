@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...bulk.mechanics.elasticity import Elasticity
-from ...contact.operators.rigid_motion import RigidMode, hold
+from ...contact.operators.rigid_motion import Load, RigidMode, hold
 from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import Pairing
 from ...errors import CaseError
@@ -52,16 +52,15 @@ def rigid_modes(
     """
 
     def mode(holder: Holder, name: str) -> RigidMode:
-        motion, load, approach = _motion(holder, name), holder.closing_moment, holder.approach
+        motion, moment, approach = _motion(holder, name), holder.closing_moment, holder.approach
         if holder.free == ("rotation",) and not _closes(motion, holder, contacts):
             motion = rotation((0.0, 0.0, -1.0), np.array(holder.pivot))
         other = float(dead(motion)[list(holder.bodies)].sum())
         if name == "z" and approach is not None:
             return RigidMode(motion, amplitude=approach, dead=other, bodies=holder.bodies)
-        load = applied(holder, motion) if load is None else load
-        return RigidMode(
-            motion, load=load, dead=other, bodies=holder.bodies, history=holder.history
-        )
+        (load, history), *others = loads_on(holders, holder, motion)
+        load = load if moment is None else moment
+        return RigidMode(motion, load, None, other, holder.bodies, history, tuple(others))
 
     return tuple(mode(holder, name) for holder in holders for name in holder.free)
 
@@ -107,10 +106,20 @@ def approaches(first: Holder, motions: Sequence[RigidMotion]) -> np.ndarray:
 
 def applied(holder: Holder, motion: RigidMotion) -> float:
     """Generalised force of the loads of the holder on a motion; moments by the right-hand rule."""
-    force = (holder.force or 0.0) * np.array(holder.load_direction)
+    force = holder.pressing_force
     force[0] += holder.tangential_force
     work = force @ motion.at(np.array(holder.point)) + np.array(holder.moments) @ motion.rotation
     return float(work)
+
+
+def loads_on(holders: Sequence[Holder], holder: Holder, motion: RigidMotion) -> tuple[Load, ...]:
+    """Generalised forces on a motion of a holder: its own, then of others that press against it."""
+    pressing = [one for one in holders if one.reaction and one.reaction == holder.name]
+    others = (
+        (-float(one.pressing_force @ motion.at(np.array(one.point))), one.history)
+        for one in pressing
+    )
+    return ((applied(holder, motion), holder.history), *others)
 
 
 def _motion(holder: Holder, name: str) -> RigidMotion:

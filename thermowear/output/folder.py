@@ -132,11 +132,13 @@ class ResultsFolder:
         track=None,
         contacts: Mapping[str, slice] | None = None,
     ) -> None:
-        """Write tables of points at an output time; the interface by contact if there are any."""
-        for name, own in (contacts or {}).items():
-            file = name_at(table_of(interface).stem, time, name)
-            write_points(self.path / file, part_of(interface, own))
-        for points in (None if contacts else interface, friction, track):
+        """Write tables of points at an output time; by contact if there are any."""
+        at_contacts = [points for points in (interface, friction) if points is not None]
+        for points in at_contacts:
+            for name, own in (contacts or {}).items():
+                file = name_at(table_of(points).stem, time, name)
+                write_points(self.path / file, part_of(points, own))
+        for points in (*([] if contacts else at_contacts), track):
             if points is not None:
                 write_points(self.path / name_at(table_of(points).stem, time), points)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack, part_of
 from .quantity import from_key, table_of
-from .rows import ContactRow, CycleRow, HeatRow, HistoryRow, LoadRow
+from .rows import ContactRow, CycleRow, HeatRow, HistoryRow, HolderRow, LoadRow, StickRow
 
 
 @dataclass(frozen=True)
@@ -25,12 +25,18 @@ class FrictionHistory:
         Stick-slip state at the end.
     outputs : dict of float to FrictionInterface
         Stick-slip states at the output times.
+    sticking : list of StickRow
+        Contacts of several bodies by increment.
+    holders : list of HolderRow
+        Holders of several bodies by increment.
     """
 
     rows: list[LoadRow]
     cycles: list[CycleRow]
     last: FrictionInterface
     outputs: dict[float, FrictionInterface]
+    sticking: list[StickRow] = field(default_factory=list)
+    holders: list[HolderRow] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -182,15 +188,18 @@ class Result:
 
         Those of the points of several contacts end in the name of the contact.
         """
+        at_points: list = [self.interface, self.profile]
+        found: list = [self.history, self.heat, self.contact_history, self.modes]
+        if self.friction is not None:
+            at_points.append(self.friction.last)
+            found += [self.friction.rows, self.friction.cycles]
+            found += [self.friction.sticking, self.friction.holders]
         of_contacts = {
             f"{table_of(points).stem}_{name}": part_of(points, own)
-            for points in (self.interface, self.profile)
+            for points in at_points
             for name, own in self.contacts.items()
         }
-        both = [] if self.contacts else [self.interface, self.profile]
-        found: list = [*both, self.history, self.heat, self.contact_history, self.modes]
-        if self.friction is not None:
-            found += [self.friction.last, self.friction.rows, self.friction.cycles]
+        found += [] if self.contacts else at_points
         if self.track is not None:
             found.append(self.track.last)
         return of_contacts | {table_of(content).stem: content for content in found if content}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from ...laws.time_course import LoadHistories
 from ..tables.analyses import Fretting, Reciprocating, Transient
 from ..tables.schema import Case
 from ..tables.tabulated import History
@@ -217,7 +218,7 @@ def fretting(case: Case) -> Iterator[Fault]:
 def _cycles_of_loads(case: Case, analysis: Fretting) -> Iterator[Fault]:
     """Cycles need a closed load cycle; output times lie within the history and its repetitions."""
     assert case.load.history is not None
-    loads, count = case.load.history.loads, int(case.cycles or 1)
+    loads, count = LoadHistories((case.load.history.loads,)), int(case.cycles or 1)
     start, end = loads.time[0], loads.end(count)
     if loads.cycle is None and count > 1:
         yield (

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from ...laws.time_course import LoadHistories
 from ..assembly.schema import AssemblyCase
 from ..tables.analyses import Fretting, Reciprocating, Timed
 from ..tables.schema import Case, as_plain
@@ -87,7 +88,7 @@ def _end_time(case: AnyCase) -> float | None:
         return None if not isinstance(settings, Timed) else settings.end_time or float("inf")
     if isinstance(settings, Fretting):
         assert case.load.history is not None  # the case has been checked
-        return case.load.history.loads.end(int(case.cycles or 1))
+        return LoadHistories((case.load.history.loads,)).end(int(case.cycles or 1))
     if not isinstance(settings, Timed):
         return None
     count = case.cycles

@@ -46,7 +46,7 @@ from .transient import TransientHistory
 from .wearing_faces import wearing_faces
 
 _UNPAIRED = 1e-6
-_OF_SEVERAL = "initial", "steady", "transient"
+_OF_SEVERAL = "initial", "steady", "transient", "fretting"
 
 
 def run(
@@ -129,7 +129,8 @@ def analyse(
             f"there are: {', '.join(_OF_SEVERAL)}"
         )
     system = wearing_faces(system, analysis, observer)
-    require_support(system)
+    if not isinstance(analysis, FrettingAnalysis):  # where friction carries loads, too
+        require_support(system)
     require_no_fluid(system, analysis)
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:

@@ -25,7 +25,7 @@ def wearing_faces(system: System, analysis: Analysis, observer: Observer) -> Sys
     coated = system.model.coated
     if analysis.type in _CYCLIC:
         unsupported = ""
-        if jumps(system.pairing):
+        if any(jumps(pairing) for pairing in system.contacts.each):
             unsupported = "contact faces of several materials that wear by different laws"
         elif coated:
             unsupported = "contact faces with layers"

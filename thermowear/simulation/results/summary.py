@@ -141,7 +141,7 @@ def _of_holder(end: Snapshot, index: int) -> dict:
         "approach_m": float(motion.at(np.array(holder.pivot)) @ direction),
         "guide_force_N": None,
         "rigid_wear_velocity_m_per_s": None,
-        **_guide_reactions(system, holder, end.contact.pressure),
+        **_guide_reactions(system, holder, end.contact.traction(system)),
         **{key: float(angle) for (name, key), angle in turned if name in holder.free},
     }
 
@@ -248,8 +248,10 @@ def _torque(
     return float(pairing.weights @ (friction * np.linalg.norm(arms, axis=1)))
 
 
-def _guide_reactions(system: System, holder: Holder, pressure: np.ndarray) -> dict[str, float]:
+def _guide_reactions(system: System, holder: Holder, traction: np.ndarray) -> dict[str, float]:
     """Guide reactions on the bodies of a holder along its constrained motions [N, N m].
+
+    The traction on the second bodies has the shape (n, gdim) [Pa].
 
     For the whole body: the forces between the halves of a symmetric section cancel.
     """
@@ -257,9 +259,9 @@ def _guide_reactions(system: System, holder: Holder, pressure: np.ndarray) -> di
     for name, motion in guides(model.kinematics, holder).items():
         if name not in holder.free:
             mode, load = RigidMode(motion, load=0.0, bodies=holder.bodies), applied(holder, motion)
-            response = hold(system.contacts, system.traction_direction, [mode]).force_response
+            response = hold(system.contacts, traction, [mode]).force_response
             dead = system.dead_resultant(motion)[list(holder.bodies)].sum()
-            reaction = float(system.weights @ (pressure * response[:, 0])) - load - float(dead)
+            reaction = float(system.weights @ response[:, 0]) - load - float(dead)
             cancels = bool(model.symmetry) and name != "z"
             reactions[_GUIDES[name]] = 0.0 if cancels else reaction
     return reactions

@@ -91,6 +91,11 @@ class LoadHistory(TimeCourse):
         """True if the holder has a tangential displacement or force."""
         return self.tangential_force is not None or self.tangential_displacement is not None
 
+    @property
+    def only_tangential(self) -> bool:
+        """True without loads along the load direction."""
+        return self.tangential and self.force is None and self.approach is None
+
     def ends_as(self, time: float) -> bool:
         """True if the loads at an instant equal those of the last one."""
         now, last = self.at(time), self.at(self.time[-1])

@@ -159,7 +159,7 @@ def _motions(case: AssemblyCase) -> Iterator[Fault]:
     if case.analysis.type == "steady" and not case.wear:
         yield "wear", "missing; a steady analysis needs the wear law of a body"
     heated = case.heat is not None and not case.heat.driven
-    if not case.motions and (case.wear or heated):
+    if not case.motions and (case.wear or heated) and not case.analysis.cyclic:
         yield "motions", "missing; wear and friction heat need a sliding body: [motions.NAME]"
 
 

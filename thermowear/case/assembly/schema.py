@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ...errors import CaseError
-from ..tables.analyses import Initial, Steady, Transient
+from ...laws.time_course import LoadHistories
+from ..tables.analyses import Fretting, Initial, Steady, Transient
 from ..tables.conditions import HeatTable
 from ..tables.contact import InterfaceTable
 from ..tables.materials import Properties, cell_sets, located_material
@@ -48,7 +49,7 @@ class AssemblyCase(Section):
     motions: dict[str, BodyMotionTable] = {}
     wear: WearTable = WearTable()
     heat: HeatTable | None = None
-    analysis: Annotated[Initial | Steady | Transient, Field(discriminator="type")]
+    analysis: Annotated[Initial | Steady | Transient | Fretting, Field(discriminator="type")]
 
     @model_validator(mode="after")
     def _cell_sets_as_parts(self):
@@ -81,8 +82,16 @@ class AssemblyCase(Section):
         return located_material(self.geometry, self.bodies, part)
 
     @property
-    def cycles(self) -> None:
-        """No analysis of several bodies has cycles."""
+    def cycles(self) -> float | None:
+        """Number of cycles of the loads; None if none is given."""
+        in_analysis = getattr(self.analysis, "cycles", None)
+        return self.wear.cycles if in_analysis is None else in_analysis
+
+    @property
+    def load_histories(self) -> LoadHistories:
+        """Load histories of the holders that have one."""
+        each = [h.history.loads for h in self.holders.values() if h.history is not None]
+        return LoadHistories(tuple(each))
 
     def tagged_mesh(self):
         """Mesh of the case.

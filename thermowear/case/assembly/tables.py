@@ -117,7 +117,8 @@ class AssemblyHolderTable(Section):
                 raise KeyFault("closing_moment", 'needs free = ["rotation"]')
             if any(load is not None for load in loads):
                 raise KeyFault("closing_moment", "cannot be given together with other loads")
-        if not self.free and any(load is not None for load in loads):
+        moved = self.history is not None and self.history.loads.only_tangential
+        if not self.free and any(load is not None for load in (loads[:-1] if moved else loads)):
             raise KeyFault("free", "is empty: a fixed holder takes no loads")
         if self.direction is not None and not any(self.direction):
             raise KeyFault("direction", "has no length")

@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ...errors import CaseError
+from ...laws.time_course import LoadHistories
 from ..values.section import Number, Section
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
@@ -143,6 +144,12 @@ class Case(Section):
         """Number of cycles of the loads or of the motion; None if none is given."""
         in_analysis = getattr(self.analysis, "cycles", None)
         return self.wear.cycles if in_analysis is None else in_analysis
+
+    @property
+    def load_histories(self) -> LoadHistories:
+        """Load history of the holder, if it has one."""
+        history = self.load.history
+        return LoadHistories(() if history is None else (history.loads,))
 
     @property
     def histories(self) -> dict[str, TimeHistory]:

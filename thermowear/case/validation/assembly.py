@@ -12,7 +12,7 @@ from ..assembly.checks import check as check_tables
 from ..assembly.schema import AssemblyCase
 from ..assembly.tables import SUPPORTS
 from ..values.section import Fault
-from . import materials
+from . import cyclic_assembly, materials
 from .layer_wear import layer_wear
 from .part_wear import part_wear
 
@@ -88,4 +88,7 @@ _CHECKS = (
     layer_wear,
     part_wear,
     _carried,
+    cyclic_assembly.unsupported,
+    cyclic_assembly.fretting,
+    cyclic_assembly.one_way,
 )

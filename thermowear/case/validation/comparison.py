@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from ...laws.time_course import LoadHistories
 from ..assembly.schema import AssemblyCase
 from ..tables.analyses import Fretting, Reciprocating, Timed
 from ..tables.schema import Case, as_plain
@@ -84,11 +83,10 @@ def _truncated(value: Any) -> str:
 def _end_time(case: AnyCase) -> float | None:
     """Latest end time of an analysis that can be extended [s]."""
     settings = case.analysis
+    if isinstance(settings, Fretting):
+        return case.load_histories.end(int(case.cycles or 1))
     if isinstance(case, AssemblyCase):
         return None if not isinstance(settings, Timed) else settings.end_time or float("inf")
-    if isinstance(settings, Fretting):
-        assert case.load.history is not None  # the case has been checked
-        return LoadHistories((case.load.history.loads,)).end(int(case.cycles or 1))
     if not isinstance(settings, Timed):
         return None
     count = case.cycles

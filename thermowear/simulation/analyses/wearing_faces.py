@@ -8,7 +8,6 @@ from ...model.analyses import Analysis
 from ..runtime.observer import Observer
 from ..system.system import System
 
-_CYCLIC = "fretting", "reciprocating"
 _FOR_EVER = "steady", "stability"
 
 
@@ -23,7 +22,7 @@ def wearing_faces(system: System, analysis: Analysis, observer: Observer) -> Sys
         If the analysis does not support the faces.
     """
     coated = system.model.coated
-    if analysis.type in _CYCLIC:
+    if analysis.cyclic:
         unsupported = ""
         if any(jumps(pairing) for pairing in system.contacts.each):
             unsupported = "contact faces of several materials that wear by different laws"

@@ -9,6 +9,7 @@ import numpy as np
 from ...case.assembly.geometry import AssemblyGeometry
 from ...case.assembly.schema import AssemblyCase
 from ...case.assembly.tables import AssemblyContactTable, AssemblyHolderTable, BodyMotionTable
+from ...case.tables.analyses import Fretting
 from ...case.tables.schema import MeshTable
 from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh
@@ -119,6 +120,7 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
             for side, (body, face) in enumerate(zip(bodies, faces, strict=True))
             if body in case.wear
         },
+        closes_by_wear=not isinstance(case.analysis, Fretting),
         compliance=table.compliance or 0.0,
         fluid_pressure=table.fluid_pressure,
         pressure_degree=table.pressure_degree,

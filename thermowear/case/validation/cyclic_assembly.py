@@ -1,0 +1,117 @@
+"""Consistency checks of fretting analyses of several bodies, and of histories in the others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ..assembly.schema import AssemblyCase
+from ..assembly.tables import AssemblyContactTable, AssemblyHolderTable
+from ..tables.analyses import Fretting
+from ..values.section import Fault
+from .analyses import cycles, cycles_of_loads
+
+_FACTORS = ("conductivity_factor", "expansion_factor")
+_ONLY_FRETTING = ("approach", "tangential_force", "tangential_displacement", "cycle_start")
+_CONFLICTS = {
+    "force": ("force", "approach"),
+    "approach": ("force", "approach"),
+    "tangential_force": ("tangential_force",),
+    "tangential_displacement": ("tangential_force",),
+}
+"""Constant loads that a load of a history takes the place of."""
+
+
+def unsupported(case: AssemblyCase) -> Iterator[Fault]:
+    """Features without a meaning for faces that move back and forth."""
+    if not case.analysis.cyclic:
+        return
+    refused = f"is not supported in a {case.analysis.type} analysis"
+    if case.model == "3d":
+        yield "analysis.type", f"{case.analysis.type!r} is not supported in 3d models"
+    if case.heat is not None:
+        yield "heat", refused
+    if case.load.pressure:
+        yield "load.pressure", refused
+    for name, contact in case.contacts.items():
+        for key in () if contact.tie else _varying(contact):
+            yield f"contacts.{name}.{key}", refused
+    for name, wear in case.wear.items():
+        if wear.spread != "in-place":
+            yield f"wear.{name}.spread", refused
+    for name, law in case.wear.laws.items():
+        if law.factor.depends_on:
+            yield f"wear.{name}.factor", refused
+        varying = sorted(law.variables & {"T", "depth"}) if law.rate else []
+        if varying:
+            yield f"wear.{name}.rate", f"depends on {', '.join(varying)}; {refused[3:]}"
+    for name, body in case.bodies.items():
+        for key in _FACTORS:
+            if getattr(body, key) is not None:
+                yield f"bodies.{name}.{key}", refused
+
+
+def _varying(contact: AssemblyContactTable) -> Iterator[str]:
+    """Keys of a contact that faces at rest, or a constant friction, do not have."""
+    if contact.friction_law.variables:
+        yield "friction"
+    if contact.friction_factor.depends_on:
+        yield "friction_factor"
+    for key in ("friction_history", "fluid_pressure"):
+        if getattr(contact, key) is not None:
+            yield key
+
+
+def fretting(case: AssemblyCase) -> Iterator[Fault]:
+    """Load histories of the holders, with a cycle common to all."""
+    analysis = case.analysis
+    if not isinstance(analysis, Fretting):
+        return
+    for name in case.motions:
+        yield f"motions.{name}", "is not supported in a fretting analysis; use holders.NAME.history"
+    yield from cycles(case)
+    if not case.load_histories.each:
+        yield "holders", "needs a history in one of them: [holders.NAME.history]"
+        return
+    for name, holder in case.holders.items():
+        for key, text in _history(case, holder):
+            yield f"holders.{name}.{key}", text
+    yield from cycles_of_loads(case, analysis, "holders.NAME.history")
+
+
+def _history(case: AssemblyCase, holder: AssemblyHolderTable) -> Iterator[Fault]:
+    """Faults of the history of a holder, by key in its table."""
+    history = holder.history
+    if history is None:
+        return
+    if history.repeat:
+        yield "history.repeat", "requires a transient analysis; use analysis.cycles"
+    for i, force in enumerate(history.force or ()):
+        if force == 0.0:
+            yield f"history.force.{i}", "must be greater than 0 N in a fretting analysis"
+    for key, constant in _CONFLICTS.items():
+        given = getattr(history, key) is not None
+        for other in constant if given else ():
+            if getattr(holder, other) is not None:
+                yield other, f"cannot be given together with history.{key}"
+    if "z" not in holder.free and not history.loads.only_tangential:
+        yield "history", 'needs the motion "z" in free for a force or an approach'
+    if not history.loads.tangential:
+        return
+    bodies = {case.geometry.body_of(surface) for surface in holder.surface}
+    if case.model == "axisymmetric":
+        yield "history", "tangential loads are not supported in axisymmetric models"
+    elif any(case.bodies[body].symmetry for body in bodies):
+        yield "history", "tangential loads are not symmetric about a plane x = const"
+
+
+def one_way(case: AssemblyCase) -> Iterator[Fault]:
+    """Histories and cycles that need a cyclic analysis."""
+    if case.analysis.cyclic:
+        return
+    for key in ("cycles", "max_jump"):
+        if getattr(case.wear, key) is not None:
+            yield f"wear.{key}", f"requires a fretting analysis, not {case.analysis.type}"
+    for name, holder in case.holders.items():
+        for key in _ONLY_FRETTING if holder.history is not None else ():
+            if getattr(holder.history, key) is not None:
+                yield f"holders.{name}.history.{key}", "requires a fretting analysis"

@@ -91,18 +91,15 @@ class Profile:
     at_times=True,
 )
 class FrictionInterface:
-    """Stick-slip state at the contact points.
-
-    Signs as in `thermowear.contact.operators.tangential`.
-    """
+    """Stick-slip state at the contact points."""
 
     x: np.ndarray = as_in(InterfaceFields)
     y: np.ndarray = as_in(InterfaceFields)
     s: np.ndarray = as_in(InterfaceFields)
     weight: np.ndarray = as_in(InterfaceFields)
     pressure: np.ndarray = as_in(InterfaceFields)
-    shear: np.ndarray = column("shear traction on body 1", "Pa", "MPa", "along +x")
-    slip: np.ndarray = column("slip of body 1", "m", "µm", "along +x, relative to body 2")
+    shear: np.ndarray = column("shear traction on body 1", "Pa", "MPa", "along +x, or +y on a face along y")
+    slip: np.ndarray = column("slip of body 1", "m", "µm", "relative to body 2, along the same")
     dissipated: np.ndarray = column("dissipated energy", "J/m²", meaning="since the start")
     status: np.ndarray = column("status (0 open, 1 stick, 2 slip)")
 

@@ -134,15 +134,16 @@ class LoadRow:
     grows=True,
 )
 class StickRow:
-    """Friction of a contact of several bodies at the end of an increment; numbers as in contacts.
+    """Friction of a contact of several bodies at the end of an increment.
 
-    The force is positive along the load direction turned by +90°, +x where the first body is
-    pressed down.
+    Contacts are numbered as in ``contacts.csv``.
     """
 
     time: float = as_in(HistoryRow)
     contact: int = as_in(ContactRow)
-    friction_force: float = column("friction force", "N", meaning="on the first body")
+    friction_force: float = column(
+        "friction force", "N", meaning="on the first body, along +x, or +y if pressed along x"
+    )
     stick_area: float = as_in(LoadRow)
     dissipated: float = as_in(CycleRow)
     cycle: int = as_in(CycleRow)

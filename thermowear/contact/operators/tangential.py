@@ -156,6 +156,12 @@ def tangents(normals: np.ndarray) -> np.ndarray:
     return np.column_stack([-normals[:, 1], normals[:, 0]])[None]
 
 
+def forwards(directions: np.ndarray) -> np.ndarray:
+    """Signs that turn directions (n, 2) towards +x, or towards +y if they run along y, (n,)."""
+    x, y = directions.T
+    return np.where(np.where(np.abs(x) > _NOISE, x, y) < 0.0, -1.0, 1.0)
+
+
 def travel(contacts: Contacts, motion: HeldMotion) -> np.ndarray:
     """Travel of the first body along the face of each interface, shape (n_interfaces,).
 

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...contact.operators.tangential import tangents
+from ...contact.operators.tangential import forwards, tangents
 from ...results import ContactRow, CycleRow, FrictionInterface, HolderRow, LoadRow, StickRow
 from ..system.system import System
 from .held_loads import HeldLoads, across
@@ -54,19 +54,25 @@ class FrettingState:
         return both
 
     @cached_property
+    def sense(self) -> np.ndarray:
+        """Signs of shear and slip along +x (+y on faces along y), shape (n,)."""
+        contacts = self.system.contacts
+        means = np.array([each.weights @ each.normals for each in contacts.each])
+        return contacts.per_point(forwards(tangents(means)[0]))
+
+    @cached_property
     def forces(self) -> tuple[np.ndarray, np.ndarray]:
         """Forces at the points, shape (n,) each [N].
 
-        On the second bodies along the load direction of the first; and across it, by friction, on
-        the first bodies.
+        On the second bodies along the load direction of the first; and on the first bodies across
+        it, along +x (+y where they are pressed along x).
         """
         system, normals = self.system, self.system.contacts.normals
         traction = self.pressure[:, None] * normals - self.shear[:, None] * tangents(normals)[0]
         along = system.load_directions
-        press, pull = (
-            np.einsum("ni,ni->n", traction, direction) for direction in (along, -tangents(along)[0])
-        )
-        return system.weights * press, system.weights * pull
+        turned = tangents(along)[0]
+        press, pull = (np.einsum("ni,ni->n", traction, each) for each in (along, turned))
+        return system.weights * press, -forwards(turned) * system.weights * pull
 
     @property
     def friction(self) -> FrictionInterface:
@@ -79,8 +85,8 @@ class FrettingState:
             s=system.contacts.position,
             weight=system.weights,
             pressure=self.pressure,
-            shear=self.shear,
-            slip=state.point_slip[:, 0],
+            shear=self.sense * self.shear,
+            slip=self.sense * state.point_slip[:, 0],
             dissipated=state.dissipated,
             status=np.where(self.pressure > 0, np.where(self.sticking, 1, 2), 0),
         )

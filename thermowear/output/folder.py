@@ -19,7 +19,7 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
-from ..results.points import part_of
+from ..results.points import by_contact
 from ..results.quantity import TABLES, table_of
 from .checkpoint import CHECKPOINT, write_checkpoint
 from .files import FRAMES, final_name, is_ours, name_at, write_text
@@ -133,14 +133,11 @@ class ResultsFolder:
         contacts: Mapping[str, slice] | None = None,
     ) -> None:
         """Write tables of points at an output time; by contact if there are any."""
-        at_contacts = [points for points in (interface, friction) if points is not None]
-        for points in at_contacts:
-            for name, own in (contacts or {}).items():
-                file = name_at(table_of(points).stem, time, name)
-                write_points(self.path / file, part_of(points, own))
-        for points in (*([] if contacts else at_contacts), track):
+        for points in (interface, friction, track):
             if points is not None:
-                write_points(self.path / name_at(table_of(points).stem, time), points)
+                each = by_contact(points, contacts) if contacts else {"": points}
+                for name, part in each.items():
+                    write_points(self.path / name_at(table_of(points).stem, time, name), part)
 
     def frame(self, frame) -> None:
         """Write a `thermowear.results.Frame` for an animation."""

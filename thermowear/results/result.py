@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack, part_of
+from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack, by_contact
 from .quantity import from_key, table_of
 from .rows import ContactRow, CycleRow, HeatRow, HistoryRow, HolderRow, LoadRow, StickRow
 
@@ -188,20 +188,19 @@ class Result:
 
         Those of the points of several contacts end in the name of the contact.
         """
-        at_points: list = [self.interface, self.profile]
-        found: list = [self.history, self.heat, self.contact_history, self.modes]
-        if self.friction is not None:
-            at_points.append(self.friction.last)
-            found += [self.friction.rows, self.friction.cycles]
-            found += [self.friction.sticking, self.friction.holders]
-        of_contacts = {
-            f"{table_of(points).stem}_{name}": part_of(points, own)
-            for points in at_points
-            for name, own in self.contacts.items()
-        }
-        found += [] if self.contacts else at_points
+        friction, at_points = self.friction, list[Any]([self.interface, self.profile])
+        rows: list = [self.history, self.heat, self.contact_history, self.modes]
+        if friction is not None:
+            at_points.append(friction.last)
+            rows += [friction.rows, friction.cycles, friction.sticking, friction.holders]
         if self.track is not None:
-            found.append(self.track.last)
+            at_points.append(self.track.last)
+        of_contacts = {
+            f"{table_of(points).stem}_{name}": part
+            for points in at_points
+            for name, part in by_contact(points, self.contacts).items()
+        }
+        found = [*([] if self.contacts else at_points), *rows]
         return of_contacts | {table_of(content).stem: content for content in found if content}
 
     def columns(self, name: str) -> dict[str, np.ndarray]:

@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from ...errors import CaseError
 from ...laws.time_course import LoadHistories
-from ..tables.analyses import Fretting, Initial, Steady, Transient
+from ..tables.analyses import Fretting, Initial, Reciprocating, Steady, Transient
 from ..tables.conditions import HeatTable
 from ..tables.contact import InterfaceTable
 from ..tables.materials import Properties, cell_sets, located_material
@@ -49,7 +49,9 @@ class AssemblyCase(Section):
     motions: dict[str, BodyMotionTable] = {}
     wear: WearTable = WearTable()
     heat: HeatTable | None = None
-    analysis: Annotated[Initial | Steady | Transient | Fretting, Field(discriminator="type")]
+    analysis: Annotated[
+        Initial | Steady | Transient | Fretting | Reciprocating, Field(discriminator="type")
+    ]
 
     @model_validator(mode="after")
     def _cell_sets_as_parts(self):
@@ -86,6 +88,13 @@ class AssemblyCase(Section):
         """Number of cycles of the loads; None if none is given."""
         in_analysis = getattr(self.analysis, "cycles", None)
         return self.wear.cycles if in_analysis is None else in_analysis
+
+    @property
+    def reciprocation(self) -> tuple[float, float] | None:
+        """Largest amplitude [m] and frequency [Hz] of reciprocating bodies; None without any."""
+        each = [(m.amplitude, m.frequency) for m in self.motions.values()]
+        given = [(x, f) for x, f in each if x is not None and f is not None]
+        return max(given, default=None)
 
     @property
     def load_histories(self) -> LoadHistories:

@@ -146,6 +146,14 @@ class Case(Section):
         return self.wear.cycles if in_analysis is None else in_analysis
 
     @property
+    def reciprocation(self) -> tuple[float, float] | None:
+        """Amplitude [m] and frequency [Hz] of a reciprocating motion; None without one."""
+        motion = self.motion
+        if motion is None or motion.amplitude is None or motion.frequency is None:
+            return None
+        return motion.amplitude, motion.frequency
+
+    @property
     def load_histories(self) -> LoadHistories:
         """Load history of the holder, if it has one."""
         history = self.load.history

@@ -59,7 +59,7 @@ def _supports(case: AssemblyCase) -> Iterator[Fault]:
 def _sliding(case: AssemblyCase) -> Iterator[Fault]:
     """Sliding along x is not symmetric about a plane x = const."""
     drags = any(contact.nominal_friction > 0.0 for contact in case.contacts.values())
-    along = any(of.velocity is not None and not of.across for of in case.motions.values())
+    along = any(of.mean_velocity is not None and not of.across for of in case.motions.values())
     for body, table in case.bodies.items():
         if table.symmetry and drags and along:
             yield (
@@ -90,5 +90,6 @@ _CHECKS = (
     _carried,
     cyclic_assembly.unsupported,
     cyclic_assembly.fretting,
+    cyclic_assembly.reciprocating,
     cyclic_assembly.one_way,
 )

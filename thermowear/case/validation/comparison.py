@@ -85,15 +85,12 @@ def _end_time(case: AnyCase) -> float | None:
     settings = case.analysis
     if isinstance(settings, Fretting):
         return case.load_histories.end(int(case.cycles or 1))
-    if isinstance(case, AssemblyCase):
-        return None if not isinstance(settings, Timed) else settings.end_time or float("inf")
     if not isinstance(settings, Timed):
         return None
     count = case.cycles
     if isinstance(settings, Reciprocating) and count is not None:
-        assert case.motion is not None
-        assert case.motion.frequency is not None
-        return count / case.motion.frequency
+        assert case.reciprocation is not None  # the case has been checked
+        return count / case.reciprocation[1]
     return float("inf") if settings.end_time is None else settings.end_time
 
 

@@ -1,4 +1,4 @@
-"""Consistency checks of fretting analyses of several bodies, and of histories in the others."""
+"""Consistency checks of cyclic analyses of several bodies, and of histories in the others."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ..assembly.schema import AssemblyCase
 from ..assembly.tables import AssemblyContactTable, AssemblyHolderTable
-from ..tables.analyses import Fretting
+from ..tables.analyses import Fretting, Reciprocating
 from ..values.section import Fault
 from .analyses import cycles, cycles_of_loads
 
@@ -104,13 +104,73 @@ def _history(case: AssemblyCase, holder: AssemblyHolderTable) -> Iterator[Fault]
         yield "history", "tangential loads are not symmetric about a plane x = const"
 
 
+def reciprocating(case: AssemblyCase) -> Iterator[Fault]:
+    """Bodies reciprocate along x in plane models, with one frequency, and the analysis ends."""
+    analysis = case.analysis
+    if not isinstance(analysis, Reciprocating):
+        return
+    refused = "is not supported in a reciprocating analysis"
+    if case.model == "axisymmetric":
+        yield "model", "a reciprocating analysis needs a plane model with sliding along x"
+    if case.reciprocation is None:
+        yield "motions", "needs a body with amplitude and frequency: [motions.NAME]"
+        return
+    frequency = case.reciprocation[1]
+    for name, motion in case.motions.items():
+        if motion.amplitude is None:
+            key = "velocity" if motion.angular_velocity is None else "angular_velocity"
+            yield f"motions.{name}.{key}", f"{refused}; give amplitude and frequency"
+        elif motion.frequency != frequency:
+            yield f"motions.{name}.frequency", "must be the same for all bodies"
+        for key in ("across", "history"):
+            if getattr(motion, key):
+                yield f"motions.{name}.{key}", refused
+    for name, holder in case.holders.items():
+        if holder.history is not None:
+            yield f"holders.{name}.history", refused
+        if "x" in holder.free:
+            yield f"holders.{name}.free", '"x" is not allowed: motions along x are prescribed'
+        elif analysis.until == "steady" and "rotation" in holder.free:
+            yield (
+                "analysis.until",
+                f"holders.{name} can rotate: wear rates do not become uniform; give an end_time",
+            )
+    for name, body in case.bodies.items():
+        if body.symmetry:
+            yield f"bodies.{name}.symmetry", "reciprocating sliding is not symmetric"
+    if not case.wear:
+        yield "wear", "missing; a reciprocating analysis needs the wear law of a body"
+    yield from cycles(case)
+    yield from _end(case, analysis, frequency)
+
+
+def _end(case: AssemblyCase, analysis: Reciprocating, frequency: float) -> Iterator[Fault]:
+    """The analysis has an end, after all output times."""
+    if case.cycles is not None:
+        end = case.cycles / frequency
+        late = [t for t in analysis.output_times if t > end]
+        if late:
+            yield "analysis.output_times", f"{late[0]:g} s lies after the last cycle, {end:g} s"
+    elif analysis.end_time is None and analysis.until is None:
+        yield "analysis.end_time", 'missing; needs end_time, cycles or until = "steady"'
+
+
 def one_way(case: AssemblyCase) -> Iterator[Fault]:
     """Histories and cycles that need a cyclic analysis."""
     if case.analysis.cyclic:
         return
+    for name, motion in case.motions.items():
+        if motion.amplitude is not None:
+            yield (
+                f"motions.{name}.amplitude",
+                f"requires a reciprocating analysis, not {case.analysis.type}",
+            )
     for key in ("cycles", "max_jump"):
         if getattr(case.wear, key) is not None:
-            yield f"wear.{key}", f"requires a fretting analysis, not {case.analysis.type}"
+            yield (
+                f"wear.{key}",
+                f"requires a fretting or reciprocating analysis, not {case.analysis.type}",
+            )
     for name, holder in case.holders.items():
         for key in _ONLY_FRETTING if holder.history is not None else ():
             if getattr(holder.history, key) is not None:

@@ -108,7 +108,9 @@ class StripBetween(AssemblyGeometry):
             for end, there in zip(_ENDS, (~right, right), strict=True):
                 tags[own & there] = names.index(new or end) + 1
         upper = replace(pair, points=points, facet_tags=tags, bodies=("upper", "strip"))
-        return _in_order(replace(upper, surfaces=tuple(names)), tuple(n for n in names if _upper(n)))
+        return _in_order(
+            replace(upper, surfaces=tuple(names)), tuple(n for n in names if _upper(n))
+        )
 
 
 class StripBetweenCylinders(StripBetween):

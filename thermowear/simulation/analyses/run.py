@@ -46,7 +46,7 @@ from .transient import TransientHistory
 from .wearing_faces import wearing_faces
 
 _UNPAIRED = 1e-6
-_OF_SEVERAL = "initial", "steady", "transient", "fretting"
+_OF_SEVERAL = "initial", "steady", "transient", "fretting", "reciprocating"
 
 
 def run(

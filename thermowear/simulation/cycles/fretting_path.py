@@ -51,6 +51,10 @@ class FrettingPath:
     """
 
     def __init__(self, system: System, settings: FrettingAnalysis):
+        if system.slides is not None:
+            raise CaseError(
+                "motions: not supported in a fretting analysis; holders move the bodies"
+            )
         self.loads, self._settings = HeldLoads(system), settings
         history, contacts = self.loads.history, system.contacts
         self._path = LoadPath(history, settings.output_times)

@@ -9,7 +9,7 @@ import numpy as np
 from ...case.assembly.geometry import AssemblyGeometry
 from ...case.assembly.schema import AssemblyCase
 from ...case.assembly.tables import AssemblyContactTable, AssemblyHolderTable, BodyMotionTable
-from ...case.tables.analyses import Fretting
+from ...case.tables.analyses import Fretting, Reciprocating
 from ...case.tables.schema import MeshTable
 from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh
@@ -128,9 +128,14 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
 
 
 def _ordered(case: AssemblyCase, table: AssemblyContactTable) -> tuple[str, str]:
-    """Faces of a contact; that of a body that turns about a centre is the second one."""
+    """Faces of a contact; that of a body that turns about a centre is the second one.
+
+    In a reciprocating analysis the first one passes over the second one, whichever moves.
+    """
     assert table.between is not None  # the case has been checked
     first, second = table.between
+    if isinstance(case.analysis, Reciprocating):
+        return first, second
     moves = case.geometry.body_of(first) in case.motions
     alone = moves and case.geometry.body_of(second) not in case.motions
     return (second, first) if alone and case.model != "axisymmetric" else (first, second)
@@ -141,7 +146,7 @@ def _motion(table: BodyMotionTable | None) -> Motion | None:
     if table is None:
         return None
     return Motion(
-        velocity=table.velocity,
+        velocity=table.mean_velocity,
         angular_velocity=table.angular_velocity,
         center=table.center,
         across=table.across,

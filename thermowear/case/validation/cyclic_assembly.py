@@ -28,8 +28,6 @@ def unsupported(case: AssemblyCase) -> Iterator[Fault]:
     refused = f"is not supported in a {case.analysis.type} analysis"
     if case.model == "3d":
         yield "analysis.type", f"{case.analysis.type!r} is not supported in 3d models"
-    if case.heat is not None:
-        yield "heat", refused
     if case.load.pressure:
         yield "load.pressure", refused
     for name, contact in case.contacts.items():

@@ -133,12 +133,15 @@ def test_a_strip_between_equal_cylinders_is_twice_its_half():
 
 MOVED = {"time": CYCLE, "tangential_displacement": ["0 um", "5 um", "0 um", "-5 um", "0 um"]}
 ROLLING = {"type": "fretting", "increments": 4, "cycles": 3, "jump": 1}
+SOFTER = "2e-8 1/MPa"  # than the tube: the shares of the common face are elastic, not those of wear
 ON_TUBE = {"mesh.elements": 24, "geometry.zone": "0.8 mm", "analysis": ROLLING}
 
 
 @functools.cache
 def in_one_support():
-    return solved(TUBE, ON_TUBE | {"geometry.support_arc": "90 deg"})
+    return solved(
+        TUBE, ON_TUBE | {"geometry.support_arc": "90 deg", "wear.support.coefficient": SOFTER}
+    )
 
 
 @pytest.mark.parametrize(
@@ -149,7 +152,8 @@ def test_a_tube_that_slides_on_both_supports(angles, along):
     """requirement: each contact is that of the tube in one support, for which the other side of
     the tube is far away: pressure, shear, slip, wear of both faces to 1e-8, also along y.
     """
-    equal = {"wear.left.coefficient": "5e-8 1/MPa", "motions": GONE, "holders.rod.history": MOVED}
+    equal = {f"wear.{side}.coefficient": SOFTER for side in ("left", "right")}
+    equal |= {"motions": GONE, "holders.rod.history": MOVED}
     places = {n: {"angle": a} for n, a in zip(("left", "right"), angles, strict=True)}
     result = solved(SUPPORTS, ON_TUBE | equal | {"geometry.supports": places})
     pair = in_one_support()
@@ -183,6 +187,39 @@ def test_worn_volume_is_that_of_the_energy():
             assert found == pytest.approx(known, rel=1e-9, abs=0.0)
             assert found > 0.0
     assert result.summary["equilibrium_relative_error"] < 1e-9
+
+
+def test_it_does_not_matter_which_bodies_move():
+    """requirement: a strip that slides farther than the contacts are wide, and both cylinders over
+    a strip at rest: the same worn profiles of all faces, seen from each body.
+    """
+    far = ["0 um", "60 um", "0 um", "-60 um", "0 um"]
+    back = ["0 um", "-60 um", "0 um", "60 um", "0 um"]
+    wide = {"geometry.zone": "0.2 mm", "wear.cycles": 1500}
+    moved = solved(RIG, COARSE | wide | {"holders.grip.history.tangential_displacement": far})
+    still = solved(
+        RIG,
+        COARSE
+        | wide
+        | {
+            "holders.grip.history": GONE,
+            "holders.press.history": {"time": CYCLE, "tangential_displacement": back},
+            "holders.base.history": {"time": CYCLE, "tangential_displacement": back},
+        },
+    )
+    for side in ("upper", "lower"):
+        ours, theirs = (r.columns(f"interface_{side}") for r in (still, moved))
+        assert np.ptp(theirs["x_m"][theirs["wear_2_m"] > 1e-9]) > 1.5e-4
+        assert_alike(ours, theirs, ("wear_1_m", "wear_2_m", "pressure_Pa"), 1e-7)
+
+
+def test_a_wear_rate_with_the_friction_of_its_contact():
+    """requirement: V = k E of a rate k mu p v, whatever the laws of the other faces."""
+    rate = {"wear.lower": {"rate": "1e-14 1/Pa * mu * p * v"}}
+    result = solved(RIG, COARSE | UNEQUAL | rate)
+    contact = result.summary["contacts"]["lower"]
+    known = 1e-14 * contact["dissipated_energy_J"]
+    assert contact["wear_volume_1_m3"] == pytest.approx(known, rel=1e-9, abs=0.0)
 
 
 def test_every_holder_is_in_balance():

@@ -126,7 +126,9 @@ def test_the_volumes_are_those_of_the_laws():
     forces and friction powers of the contacts.
     """
     friction = {"upper": 0.2, "lower": 0.1}
-    result = computed({f"contacts.{k}": {"friction": mu} for k, mu in friction.items()})
+    changes = {f"contacts.{k}": {"friction": mu} for k, mu in friction.items()}
+    changes["wear.lower"] = {"rate": "4e-13 1/Pa * mu * p * v"}  # of 0.1, that of WEAR
+    result = computed(changes)
     slid = 4 * AMPLITUDE * CYCLES
     for side in ("upper", "lower"):
         contact = result.summary["contacts"][side]

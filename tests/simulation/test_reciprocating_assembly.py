@@ -170,3 +170,17 @@ def test_a_contact_at_rest_and_a_stroke_too_long():
     long = {"motions.strip.amplitude": "6 mm"}
     with pytest.raises(tw.CaseError, match=r"contacts\.upper: .* of upper_face leaves strip_upper"):
         computed(long)
+
+
+def test_bodies_with_different_strokes():
+    """requirement: a punch that moves with the strip slides by the difference: V = k F s, and the
+    length of its track.
+    """
+    moving = {"motions.upper": {"amplitude": "2 mm", "frequency": "2 Hz"}}
+    result = computed(moving)
+    for side, amplitude in (("upper", 3e-3), ("lower", 5e-3)):
+        slid = 4 * amplitude * CYCLES
+        volume = result.summary["contacts"][side]["wear_volume_1_m3"]
+        assert volume == pytest.approx(WEAR[side] * FORCE * slid, rel=1e-9, abs=0.0)
+        track = result.columns(f"track_{side}")["x_m"]
+        assert np.ptp(track) == pytest.approx(10e-3 + 2 * amplitude, rel=1e-9)

@@ -31,6 +31,10 @@ def pulled(key, values):
         ([TIMED, pulled("approach", ["1 um", "2 um"])], f"{PISTON}.history.approach: {ONLY_FORCE}"),
         (
             [TIMED, pulled("tangential_force", ["1 N", "2 N"])],
+            f"{PISTON}.history.tangential_force: {ONLY_FORCE}",
+        ),
+        (
+            [TIMED, f"{PISTON}.history={{time=['0 s','1 s']}}"],
             f"{PISTON}.history.force: missing; required in a transient analysis",
         ),
         (

@@ -11,6 +11,7 @@ import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.case import as_plain
 from thermowear.errors import CaseNote
+from thermowear.laws.time_course import LoadHistories
 
 from .bad import Bad, assert_refused
 from .starter import FRETTING, GONE, RUNNING_IN, tables
@@ -89,7 +90,7 @@ def test_cycles_of_loads_may_be_a_file(tmp_path):
     path.write_text(tomli_w.dumps(tables(FRETTING, changes)), encoding="utf-8")
     history = tw.load(path).load.history
     assert history.tangential_force == (0.0, 36.0, -36.0, 36.0)
-    assert history.loads.cycle == (1.0, 5.0)
+    assert LoadHistories((history.loads,)).cycle == (1.0, 5.0)
 
 
 def test_a_list_stands_in_the_file_or_in_the_table(tmp_path):

@@ -2,7 +2,22 @@
 
 import numpy as np
 
-from thermowear.contact.operators.tangential import frictional_contact
+from thermowear.contact.friction.stick_slip_state import Loads
+from thermowear.contact.operators.tangential import HeldMotion, frictional_contact
+from thermowear.laws.motions import translation
+
+PRESS = HeldMotion(translation((0.0, -1.0)), role="press")
+SLIDE = HeldMotion(translation((1.0, 0.0)), role="slide")
+
+
+def loaded(
+    normal_force=None, approach=None, tangential_force=None, tangential_displacement=None
+) -> Loads:
+    """Loads of body 1 of a pair; without tangential ones it can only be pressed."""
+    pairs = [(normal_force, approach)]
+    if (tangential_force, tangential_displacement) != (None, None):
+        pairs.append((tangential_force, tangential_displacement))
+    return Loads(*np.array(pairs, dtype=float).T)
 
 
 def half_plane(line, cells, extent=1.25):
@@ -25,5 +40,8 @@ def half_plane(line, cells, extent=1.25):
     rigid[0, :, 0], rigid[1, :, 1] = 1.0, -1.0
     gap = x**2 / (2 * line.radius)
     weights = np.full(cells, step)
-    contact = frictional_contact(np.eye(cells), weights, gap, responses, rigid, responses[0, :0])
+    travel, held = np.array([[0.0, 1.0]]), (PRESS, SLIDE)
+    contact = frictional_contact(
+        np.eye(cells), weights, gap, responses, rigid, travel, held, responses[0, :0]
+    )
     return x, contact

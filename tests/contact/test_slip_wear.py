@@ -6,14 +6,14 @@ import itertools
 import numpy as np
 import pytest
 
-from thermowear.contact.friction.slip_wear import SlipWear, WornProfile
+from thermowear.contact.friction.slip_wear import SlipWear, WornProfile, WornProfiles
 from thermowear.contact.friction.stick_slip import follow
-from thermowear.contact.friction.stick_slip_state import Loads, Status, unloaded
+from thermowear.contact.friction.stick_slip_state import Status, unloaded
 from thermowear.laws import PowerWear
 from thermowear.reference.growing_contact import growing_line
 from thermowear.reference.hertz import MindlinLine
 
-from .half_plane import half_plane
+from .half_plane import half_plane, loaded
 
 LINE = MindlinLine(force=1e5, radius=0.05, modulus=1e11, friction=0.4)
 A = LINE.normal.half_width
@@ -27,16 +27,16 @@ def close(value, rel=1e-6):
 
 def wear(x, laws=LAWS, bodies=(0, 1), duration=1.0, repeats=1):
     areas = np.full(len(x), x[1] - x[0])
-    profiles = tuple(WornProfile(x, areas, body == 0) for body in bodies)
+    profiles = tuple(WornProfiles((WornProfile(x, areas, body == 0),)) for body in bodies)
     return SlipWear(laws, profiles, 0.3, duration, repeats)
 
 
 def pushed(*forces):
-    return [Loads(normal_force=LINE.force, tangential_force=q) for q in forces]
+    return [loaded(normal_force=LINE.force, tangential_force=q) for q in forces]
 
 
 def moved(*places):
-    return [Loads(normal_force=LINE.force, tangential_displacement=d) for d in places]
+    return [loaded(normal_force=LINE.force, tangential_displacement=d) for d in places]
 
 
 def volumes(x, state):

@@ -16,9 +16,10 @@ from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.friction import stick_slip
 from thermowear.contact.friction.stick_slip import FullSliding, advance, follow
-from thermowear.contact.friction.stick_slip_state import Loads, Status, unloaded
+from thermowear.contact.friction.stick_slip_state import Status, unloaded
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.tangential import condense_tangential
+from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
@@ -26,7 +27,8 @@ from thermowear.parallel import sum_over_ranks
 from thermowear.reference.hertz import MindlinLine, contact_modulus
 
 from ..conftest import two_blocks
-from .half_plane import half_plane
+from .half_plane import PRESS as PRESSED
+from .half_plane import SLIDE, half_plane, loaded
 
 COMM = MPI.COMM_WORLD
 LINE = MindlinLine(force=1e5, radius=0.05, modulus=1e11, friction=0.4)
@@ -35,7 +37,7 @@ PRESS = 4e5  # N on the blocks
 
 
 def pushed(*tangential, normal=LINE.force):
-    return [Loads(normal_force=normal, tangential_force=q) for q in tangential]
+    return [loaded(normal_force=normal, tangential_force=q) for q in tangential]
 
 
 @pytest.fixture(scope="module")
@@ -48,10 +50,10 @@ def mindlin():
 
 UNLIKE = {"upper": ElasticMaterial(2e11, 0.3), "lower": ElasticMaterial(7e10, 0.2)}
 ALIKE = dict.fromkeys(UNLIKE, ElasticMaterial(2e11, 0.3))
-BOTH_WAYS = ((0.0, -1.0), (1.0, 0.0))
+BOTH_WAYS = PRESSED, SLIDE
 
 
-def block_contact(model, degree=4, materials=UNLIKE, translations=BOTH_WAYS, **mesh):
+def block_contact(model, degree=4, materials=UNLIKE, held=BOTH_WAYS, **mesh):
     """Elasticity, x of the points, and condensed contact of two blocks."""
     mesh.setdefault("columns", (3, 4))
     tagged = two_blocks(**mesh) if COMM.rank == 0 else None
@@ -60,7 +62,7 @@ def block_contact(model, degree=4, materials=UNLIKE, translations=BOTH_WAYS, **m
     faces = (gather_face(bodies, f"{body}_face") for body in ("upper", "lower"))
     pairing = pair(*faces, model, degree + 2)
     basis = pressure_basis(pairing, degree - 1)
-    contact = condense_tangential(elastic, pairing, basis, np.array(translations))
+    contact = condense_tangential(elastic, Contacts((pairing,)), basis, held)
     return elastic, pairing.points[:, 0], contact
 
 
@@ -253,7 +255,7 @@ def test_too_much_force_slides(blocks):
     assert state.force[1] == pytest.approx(0.29 * PRESS)
     for q in (0.301 * PRESS, -0.31 * PRESS, 2 * PRESS):
         with pytest.raises(FullSliding, match=r"friction carries 120000 N"):
-            advance(contact, 0.3, state, Loads(normal_force=PRESS, tangential_force=q))
+            advance(contact, 0.3, state, loaded(normal_force=PRESS, tangential_force=q))
     with pytest.raises(FullSliding):
         list(follow(contact, 0.3, pushed(0.31 * PRESS, normal=PRESS), 2, state))
 
@@ -261,7 +263,7 @@ def test_too_much_force_slides(blocks):
 def test_given_displacement_slides_with_friction(blocks):
     """requirement: under a large displacement the force is mu P, and the work goes into heat."""
     _, contact = blocks
-    corners = [Loads(normal_force=PRESS, tangential_displacement=s) for s in (1e-3, 2e-3)]
+    corners = [loaded(normal_force=PRESS, tangential_displacement=s) for s in (1e-3, 2e-3)]
     first, second = follow(contact, 0.3, corners, 1)
     assert np.all(second.status == Status.SLIP)
     assert second.force == pytest.approx([PRESS, 0.3 * PRESS], rel=1e-9)
@@ -273,15 +275,15 @@ def test_given_approach_is_the_force_it_takes(blocks):
     """requirement: force and translation of the holder are two sides of one state."""
     _, contact = blocks
     *_, forced = follow(contact, 0.3, pushed(0.1 * PRESS, normal=PRESS), 1)
-    loads = Loads(approach=forced.motion[0], tangential_displacement=forced.motion[1])
+    loads = loaded(approach=forced.motion[0], tangential_displacement=forced.motion[1])
     moved = advance(contact, 0.3, unloaded(contact), loads)
     np.testing.assert_allclose(moved.force, forced.force, rtol=1e-8)
     np.testing.assert_allclose(moved.shear, forced.shear, atol=1e-8 * forced.pressure.max())
-    lifted = advance(contact, 0.3, forced, Loads(approach=-1e-6, tangential_displacement=0.0))
+    lifted = advance(contact, 0.3, forced, loaded(approach=-1e-6, tangential_displacement=0.0))
     assert np.all(lifted.status == Status.OPEN)
     assert np.all(lifted.force == 0)
     with pytest.raises(ComputationError, match="do not touch"):
-        advance(contact, 0.3, forced, Loads(approach=-1e-6, tangential_force=0.0))
+        advance(contact, 0.3, forced, loaded(approach=-1e-6, tangential_force=0.0))
 
 
 def test_the_path_matters():
@@ -299,7 +301,7 @@ def test_without_friction_it_is_contact(blocks):
     """requirement: mu = 0 gives the pressure of `solve_contact`."""
     _, contact = blocks
     m = contact.basis.shape[1]
-    state = advance(contact, 0.0, unloaded(contact), Loads(PRESS, tangential_displacement=1e-5))
+    state = advance(contact, 0.0, unloaded(contact), loaded(PRESS, tangential_displacement=1e-5))
     expected = solve_contact(
         contact.compliance[:m, :m],
         contact.weighted.T @ contact.gap,
@@ -316,7 +318,7 @@ def test_friction_by_coefficient_and_wear(blocks):
     """requirement: friction may vary; a worn layer brings the holder closer by its depth."""
     _, contact = blocks
     friction = np.linspace(0.05, 0.4, contact.basis.shape[1])
-    loads = Loads(normal_force=PRESS, tangential_force=0.05 * PRESS)
+    loads = loaded(normal_force=PRESS, tangential_force=0.05 * PRESS)
     state = advance(contact, friction, unloaded(contact), loads)
     assert np.all(np.abs(shears(state)) <= friction * state.pressure)
     lower = dataclasses.replace(contact, gap=contact.gap + 1e-6)
@@ -329,8 +331,8 @@ def test_pressing_a_ring():
     """requirement: axisymmetric without torsion; unlike bodies slip radially at the edges, which
     friction resists; no tangential motion of the holder.
     """
-    *_, contact = block_contact(Axisymmetric(), translations=((0.0, -1.0),))
-    states = list(follow(contact, 0.03, [Loads(normal_force=1e6)], 3))
+    *_, contact = block_contact(Axisymmetric(), held=(PRESSED,))
+    states = list(follow(contact, 0.03, [loaded(normal_force=1e6)], 3))
     assert set(states[-1].status) == {Status.STICK, Status.SLIP}
     assert states[-1].force == pytest.approx([1e6], rel=1e-9)
     losses = [contact.weighted.sum(axis=1) @ state.dissipated for state in states]
@@ -348,9 +350,9 @@ def test_increments_are_halved_where_they_fail(blocks, monkeypatch):
     taken, limit = [], 0.3 * PRESS
 
     def cautious(contact, friction, state, loads, gap=None):
-        if abs(loads.normal_force - state.force[0]) > limit:
+        if abs(loads.forces[0] - state.force[0]) > limit:
             raise ComputationError("too far")
-        taken.append(loads.normal_force)
+        taken.append(loads.forces[0])
         return advance(contact, friction, state, loads, gap)
 
     monkeypatch.setattr(stick_slip, "advance", cautious)
@@ -374,7 +376,7 @@ def test_increments_are_halved_where_they_fail(blocks, monkeypatch):
 def test_loads_that_do_not_hold_the_body(blocks, wrong):
     """requirement: exactly one of force and translation along each motion."""
     with pytest.raises(ValueError, match="loads:"):
-        advance(blocks[1], 0.3, unloaded(blocks[1]), Loads(**wrong))
+        advance(blocks[1], 0.3, unloaded(blocks[1]), loaded(**wrong))
 
 
 def test_friction_carries_what_sliding_takes(blocks):
@@ -382,10 +384,10 @@ def test_friction_carries_what_sliding_takes(blocks):
     _, contact = blocks
     friction = np.linspace(0.05, 0.4, contact.basis.shape[1])
     start = unloaded(contact)
-    pressed = Loads(normal_force=PRESS, tangential_force=0.0)
+    pressed = loaded(normal_force=PRESS, tangential_force=0.0)
     near = advance(contact, friction, start, pressed).motion[0]
-    slid = advance(contact, friction, start, Loads(approach=near, tangential_displacement=1e-2))
-    push = Loads(approach=near, tangential_force=1.01 * slid.force[1])
+    slid = advance(contact, friction, start, loaded(approach=near, tangential_displacement=1e-2))
+    push = loaded(approach=near, tangential_force=1.01 * slid.force[1])
     with pytest.raises(FullSliding) as refused:
         advance(contact, friction, slid, push)
     carried = float(re.search(r"carries ([\d.e+]+) N", str(refused.value)).group(1))

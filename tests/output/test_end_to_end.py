@@ -85,6 +85,9 @@ HEADS = {
     "pressure_imaginary",
     "contacts": "time_s,contact,normal_force_N,friction_power_W,max_pressure_Pa,contact_area_m2,"
     "wear_volume_1_m3,wear_volume_2_m3,max_temperature_1_K,max_temperature_2_K",
+    "sticking": "time_s,contact,friction_force_N,stick_area_m2,dissipated_J,cycle",
+    "holders": "time_s,holder,normal_force_N,approach_m,tangential_force_N,"
+    "tangential_displacement_m,moment_Nm,rotation_rad",
     "history": "time_s,sliding_distance_m,max_pressure_Pa,contact_area_m2,wear_volume_1_m3,"
     "wear_volume_2_m3,max_temperature_K,approach_m,step_s,error",
 }

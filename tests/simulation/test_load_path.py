@@ -3,12 +3,14 @@
 from dataclasses import replace
 
 from thermowear.case.tables.tabulated import History
+from thermowear.laws.time_course import LoadHistories
 from thermowear.simulation.cycles.load_path import LoadPath
 
 
 def history(*pushes, **keys):
     times = [f"{t} s" for t in range(len(pushes))]
-    return History(time=times, tangential_force=[f"{q} N" for q in pushes], **keys).loads
+    given = History(time=times, tangential_force=[f"{q} N" for q in pushes], **keys)
+    return LoadHistories((given.loads,))
 
 
 def way(loads, cycles=1, jump=1, output_times=()):

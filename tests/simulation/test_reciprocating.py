@@ -76,7 +76,7 @@ def test_a_moved_body_is_where_it_should_be():
     """
     system = built(case_of({"holder.free": ["z", "rotation"], "load.point": ["1 mm"]}))
     for way in (1, -1):
-        there = moved(system, 2e-3, way)
+        there = moved(system, np.array([2e-3]), way)
         assert there.pairing.points[0, 0] == close(-3e-3)
         assert there.pairing.points[-1, 0] == close(7e-3)
         assert there.weights.sum() == close(2 * HALF * THICKNESS)
@@ -224,7 +224,7 @@ def test_a_punch_that_alone_wears_fits_everywhere():
     """requirement: the pressure is uniform, F/(2 h t), in every position, but at the edges."""
     changes = {"wear": {"punch": LAW}, "contact": {}}
     case = case_of(changes, "mesh.degree=4", "mesh.elements=12")
-    problem = ReciprocatingProblem(*stroke_of(case))
+    problem = ReciprocatingProblem(*stroke_of(case), np.ones(1))
     *_, last = moments(problem, replace(analysis_of(case), end_time=1e3), None)
     pressure = last.state.pressure / (FORCE / (2 * HALF * THICKNESS))
     inner = slice(pressure.shape[1] // 6, -(pressure.shape[1] // 6))

@@ -87,21 +87,14 @@ class LoadHistory(TimeCourse):
     cycle_start: float | None = None
 
     @property
-    def cycle(self) -> tuple[float, float] | None:
-        """Begin and end of the cycle that may be repeated [s]; None if there is none."""
-        starts = self.time[:-1] if self.cycle_start is None else (self.cycle_start,)
-        closed = [start for start in starts if self.ends_as(start)]
-        return (closed[0], self.time[-1]) if closed else None
-
-    def end(self, cycles: int) -> float:
-        """Time at the end of a number of cycles [s]."""
-        last = self.time[-1]
-        return last if self.cycle is None else last + (cycles - 1) * (last - self.cycle[0])
-
-    @property
     def tangential(self) -> bool:
         """True if the holder has a tangential displacement or force."""
         return self.tangential_force is not None or self.tangential_displacement is not None
+
+    @property
+    def only_tangential(self) -> bool:
+        """True without loads along the load direction."""
+        return self.tangential and self.force is None and self.approach is None
 
     def ends_as(self, time: float) -> bool:
         """True if the loads at an instant equal those of the last one."""
@@ -117,3 +110,40 @@ class LoadHistory(TimeCourse):
     def factor_at(self, time: float) -> float:
         """Force at a time [s] relative to the largest one; 1 where the force is constant."""
         return 1.0 if self.force is None else self.at(time)["force"] / max(self.force)
+
+
+@dataclass(frozen=True)
+class LoadHistories:
+    """Load histories of several holders, with a cycle common to all.
+
+    Loads are constant after the last instant of their own history.
+
+    Attributes
+    ----------
+    each : tuple of LoadHistory
+    """
+
+    each: tuple[LoadHistory, ...]
+
+    @property
+    def time(self) -> tuple[float, ...]:
+        """Instants of all histories, in order [s]."""
+        return tuple(sorted({time for history in self.each for time in history.time}))
+
+    @property
+    def cycle(self) -> tuple[float, float] | None:
+        """Begin and end of the cycle that may be repeated [s]; None if there is none.
+
+        It begins at the latest given start, else at the first instant at which all loads are those
+        of the end.
+        """
+        times, starts = self.time, [history.cycle_start for history in self.each]
+        given = [start for start in starts if start is not None]
+        candidates = (max(given),) if given else times[:-1]
+        closed = [start for start in candidates if all(one.ends_as(start) for one in self.each)]
+        return (closed[0], times[-1]) if closed else None
+
+    def end(self, cycles: int) -> float:
+        """Time at the end of a number of cycles [s]."""
+        cycle, last = self.cycle, self.time[-1]
+        return last if cycle is None else last + (cycles - 1) * (last - cycle[0])

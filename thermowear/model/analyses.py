@@ -22,6 +22,8 @@ class StaticAnalysis:
         ``"stability"``: thermoelastic stability.
     """
 
+    cyclic: ClassVar[bool] = False
+
     type: Literal["initial", "steady", "stability"]
 
 
@@ -41,7 +43,11 @@ class SteppedAnalysis:
         Computing time between checkpoints, besides those at output times [s].
     largest_kept : float
         Wear that may be kept in the gap, relative to the dimensions of the bodies.
+    cyclic : bool
+        True if the faces move back and forth.
     """
+
+    cyclic: ClassVar[bool] = False
 
     output_times: tuple[float, ...] = ()
     tolerance: float = 1e-4
@@ -105,6 +111,7 @@ class ReciprocatingAnalysis(TimedAnalysis):
     """
 
     type: ClassVar[str] = "reciprocating"
+    cyclic: ClassVar[bool] = True
 
     tolerance: float = 1e-3
     steady_tolerance: float = 0.05
@@ -132,6 +139,7 @@ class FrettingAnalysis(SteppedAnalysis):
     """
 
     type: ClassVar[str] = "fretting"
+    cyclic: ClassVar[bool] = True
 
     tolerance: float = 1e-2
     increments: int = 20

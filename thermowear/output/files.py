@@ -32,7 +32,10 @@ PICTURES = {
 }
 """Pictures of a run with their captions, in the order of the report."""
 
-_BY_CONTACT = "interface", "profile", "wear", "coating", "faces", "mode"
+_BY_CONTACT = (
+    *("interface", "profile", "wear", "coating", "faces"),
+    *("mode", "friction", "track"),
+)
 """Pictures by contact in a model of several bodies."""
 _AT = "_at_"
 """Between the name of a contact and the output time in the names of files."""

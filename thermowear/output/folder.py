@@ -19,7 +19,7 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
-from ..results.points import part_of
+from ..results.points import by_contact
 from ..results.quantity import TABLES, table_of
 from .checkpoint import CHECKPOINT, write_checkpoint
 from .files import FRAMES, final_name, is_ours, name_at, write_text
@@ -132,13 +132,12 @@ class ResultsFolder:
         track=None,
         contacts: Mapping[str, slice] | None = None,
     ) -> None:
-        """Write tables of points at an output time; the interface by contact if there are any."""
-        for name, own in (contacts or {}).items():
-            file = name_at(table_of(interface).stem, time, name)
-            write_points(self.path / file, part_of(interface, own))
-        for points in (None if contacts else interface, friction, track):
+        """Write tables of points at an output time; by contact if there are any."""
+        for points in (interface, friction, track):
             if points is not None:
-                write_points(self.path / name_at(table_of(points).stem, time), points)
+                each = by_contact(points, contacts) if contacts else {"": points}
+                for name, part in each.items():
+                    write_points(self.path / name_at(table_of(points).stem, time, name), part)
 
     def frame(self, frame) -> None:
         """Write a `thermowear.results.Frame` for an animation."""

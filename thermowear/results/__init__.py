@@ -12,4 +12,4 @@ from .result import (
     Result,
     TrackHistory,
 )
-from .rows import ContactRow, CycleRow, HeatRow, HistoryRow, LoadRow
+from .rows import ContactRow, CycleRow, HeatRow, HistoryRow, HolderRow, LoadRow, StickRow

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 from typing import TypeVar
 
 import numpy as np
@@ -91,18 +93,17 @@ class Profile:
     at_times=True,
 )
 class FrictionInterface:
-    """Stick-slip state at the contact points.
-
-    Signs as in `thermowear.contact.operators.tangential`.
-    """
+    """Stick-slip state at the contact points."""
 
     x: np.ndarray = as_in(InterfaceFields)
     y: np.ndarray = as_in(InterfaceFields)
     s: np.ndarray = as_in(InterfaceFields)
     weight: np.ndarray = as_in(InterfaceFields)
     pressure: np.ndarray = as_in(InterfaceFields)
-    shear: np.ndarray = column("shear traction on body 1", "Pa", "MPa", "along +x")
-    slip: np.ndarray = column("slip of body 1", "m", "µm", "along +x, relative to body 2")
+    shear: np.ndarray = column(
+        "shear traction on body 1", "Pa", "MPa", "along +x, or +y on a face along y"
+    )
+    slip: np.ndarray = column("slip of body 1", "m", "µm", "relative to body 2, along the same")
     dissipated: np.ndarray = column("dissipated energy", "J/m²", meaning="since the start")
     status: np.ndarray = column("status (0 open, 1 stick, 2 slip)")
 
@@ -111,11 +112,15 @@ class FrictionInterface:
     "track", "Track at the end", "reciprocating: wear depth and rate along body 2", at_times=True
 )
 class WornTrack:
-    """Wear of body 2 along its track in reciprocating sliding."""
+    """Wear of body 2 along its track in reciprocating sliding.
+
+    Tracks of several contacts follow one another; `counts` has their numbers of points.
+    """
 
     x: np.ndarray = as_in(InterfaceFields)
     wear_2: np.ndarray = as_in(InterfaceFields)
     wear_rate_2: np.ndarray = as_in(InterfaceFields)
+    counts: tuple[int, ...] = ()
 
 
 @table(
@@ -145,6 +150,22 @@ class Modes:
 
 
 Points = TypeVar("Points")
+
+
+def by_contact(points: Points, contacts: Mapping[str, slice]) -> dict[str, Points]:
+    """Points of each of several contacts by its name, from the ranges of the contact points.
+
+    A worn track has points of its own; modes repeat the points one after the other.
+    """
+    ranges: list[slice | np.ndarray] = list(contacts.values())
+    if isinstance(points, WornTrack) and contacts:
+        ends = np.cumsum([0, *points.counts])
+        ranges = [slice(int(a), int(b)) for a, b in pairwise(ends)]
+    if isinstance(points, Modes) and contacts:
+        count = max(own.stop for own in contacts.values())
+        every = np.arange(len(points.mode)).reshape(-1, count)
+        ranges = [every[:, own].ravel() for own in contacts.values()]
+    return {name: part_of(points, own) for name, own in zip(contacts, ranges, strict=True)}
 
 
 def part_of(points: Points, chosen: slice | np.ndarray) -> Points:

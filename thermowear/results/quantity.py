@@ -124,7 +124,7 @@ class Quantity:
 
     def of_bodies(self, names: Sequence[str]) -> Quantity:
         """Quantity whose label calls the first and the second body by their names."""
-        label = re.sub(r", body ([12])$", lambda found: f", {names[int(found[1]) - 1]}", self.label)
+        label = re.sub(r"\bbody ([12])$", lambda found: names[int(found[1]) - 1], self.label)
         return replace(self, label=label)
 
     def drawn(self, values):

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack, part_of
+from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack, by_contact
 from .quantity import from_key, table_of
-from .rows import ContactRow, CycleRow, HeatRow, HistoryRow, LoadRow
+from .rows import ContactRow, CycleRow, HeatRow, HistoryRow, HolderRow, LoadRow, StickRow
 
 
 @dataclass(frozen=True)
@@ -25,12 +25,18 @@ class FrictionHistory:
         Stick-slip state at the end.
     outputs : dict of float to FrictionInterface
         Stick-slip states at the output times.
+    sticking : list of StickRow
+        Contacts of several bodies by increment.
+    holders : list of HolderRow
+        Holders of several bodies by increment.
     """
 
     rows: list[LoadRow]
     cycles: list[CycleRow]
     last: FrictionInterface
     outputs: dict[float, FrictionInterface]
+    sticking: list[StickRow] = field(default_factory=list)
+    holders: list[HolderRow] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -182,30 +188,22 @@ class Result:
 
         Those of the points of several contacts end in the name of the contact.
         """
-        of_contacts: dict[str, Any] = {
-            f"{table_of(points).stem}_{name}": part_of(points, own)
-            for points in (self.interface, self.profile)
-            for name, own in self.contacts.items()
-        }
-        both = [] if self.contacts else [self.interface, self.profile, self.modes]
+        friction, at_points = self.friction, list[Any]([self.interface, self.profile])
+        rows: list = [self.history, self.heat, self.contact_history]
         if self.modes is not None:
-            of_contacts |= self._modes_of_contacts(self.modes)
-        found: list = [*both, self.history, self.heat, self.contact_history]
-        if self.friction is not None:
-            found += [self.friction.last, self.friction.rows, self.friction.cycles]
+            at_points.append(self.modes)
+        if friction is not None:
+            at_points.append(friction.last)
+            rows += [friction.rows, friction.cycles, friction.sticking, friction.holders]
         if self.track is not None:
-            found.append(self.track.last)
-        return of_contacts | {table_of(content).stem: content for content in found if content}
-
-    def _modes_of_contacts(self, modes: Modes) -> dict[str, Modes]:
-        """Tables of the modes at each contact; empty for a pair."""
-        starts = np.arange(0, len(modes.mode), len(self.interface.s))[:, None]
-        return {
-            f"{table_of(modes).stem}_{name}": part_of(
-                modes, (starts + np.arange(own.start, own.stop)).ravel()
-            )
-            for name, own in self.contacts.items()
+            at_points.append(self.track.last)
+        of_contacts = {
+            f"{table_of(points).stem}_{name}": part
+            for points in at_points
+            for name, part in by_contact(points, self.contacts).items()
         }
+        found = [*([] if self.contacts else at_points), *rows]
+        return of_contacts | {table_of(content).stem: content for content in found if content}
 
     def columns(self, name: str) -> dict[str, np.ndarray]:
         """Columns of a table in SI by their names in files, as `pandas.DataFrame` takes them.

@@ -124,3 +124,50 @@ class LoadRow:
     cycle: int = as_in(CycleRow)
     wear_volume_1: float = as_in(HistoryRow)
     wear_volume_2: float = as_in(HistoryRow)
+
+
+@table(
+    "sticking",
+    "Sticking, one row per contact and increment",
+    "fretting of several bodies: one row per increment and contact with friction force, stick area "
+    "and dissipated energy",
+    grows=True,
+)
+class StickRow:
+    """Friction of a contact of several bodies at the end of an increment.
+
+    Contacts are numbered as in ``contacts.csv``.
+    """
+
+    time: float = as_in(HistoryRow)
+    contact: int = as_in(ContactRow)
+    friction_force: float = column(
+        "friction force", "N", meaning="on the first body, along +x, or +y if pressed along x"
+    )
+    stick_area: float = as_in(LoadRow)
+    dissipated: float = as_in(CycleRow)
+    cycle: int = as_in(CycleRow)
+
+
+@table(
+    "holders",
+    "Holders, one row per holder and increment",
+    "fretting of several bodies: one row per increment and holder with its forces and "
+    "displacements",
+    grows=True,
+)
+class HolderRow:
+    """Forces of a holder on its bodies at the end of an increment, and its motion at the pivot.
+
+    Holders are numbered in the order of the case. Tangential is along x, or along y for a holder
+    that is pressed along x; moments and rotations are anticlockwise.
+    """
+
+    time: float = as_in(HistoryRow)
+    holder: int = column("holder", meaning="number, in the order of the case")
+    normal_force: float = as_in(HeatRow)
+    approach: float = as_in(HistoryRow)
+    tangential_force: float = column("tangential force", "N", meaning="of the holder")
+    tangential_displacement: float = column("tangential displacement", "m", "µm")
+    moment: float = column("moment", "N m", meaning="of the holder about its pivot")
+    rotation: float = column("rotation", "rad")

@@ -104,7 +104,7 @@ class ScriptedModel:
             raise CaseError(f"Model: the body {apart[0].name!r} is at no interface")
         for kind, names in (
             ("bodies", [body.name for body in self.bodies]),
-            ("interfaces", [i.name for i in self._model(closes_by_wear=True).interfaces]),
+            ("interfaces", [i.name for i in self._model(StaticAnalysis("initial")).interfaces]),
         ):
             if len(set(names)) != len(names):
                 raise CaseError(f"Model: two {kind} have the same name; one of: {', '.join(names)}")
@@ -182,13 +182,16 @@ class ScriptedModel:
     def reciprocating(
         self, amplitude: Any, frequency: Any, observer: Observer | None = None, **settings: Any
     ) -> ModelSolution:
-        """Reciprocating sliding along x, see `model.analyses.ReciprocatingAnalysis`."""
+        """Reciprocating sliding along x, see `model.analyses.ReciprocatingAnalysis`.
+
+        `moving` is by default the first body on a holder. Of several bodies, the first face of
+        each interface passes over the second one, whichever moves.
+        """
         x = in_python(units.Length, amplitude, "reciprocating.amplitude")
         f = in_python(units.Frequency, frequency, "reciprocating.frequency")
-        held = self.bodies[0]
-        moving = replace(self, motions={held: Translation(4 * x * f)})
+        motions = {settings.pop("moving", self.bodies[0]): Translation(4 * x * f)}
         analysis = ReciprocatingAnalysis(**settings, amplitude=x, frequency=f)
-        return moving._solved(analysis, observer)
+        return replace(self, motions=motions)._solved(analysis, observer)
 
     def _solved(self, analysis: Analysis, observer: Observer | None) -> ModelSolution:
         """Solution of an analysis. Every rank calls."""
@@ -201,13 +204,13 @@ class ScriptedModel:
 
     def _system(self, analysis: Analysis, observer: Observer | None = None) -> System:
         observer = observer or Observer()
-        model = self._model(closes_by_wear=not isinstance(analysis, FrettingAnalysis))
+        model = self._model(analysis)
         parts = self._shared.setdefault("parts", SetupCache())
         single = needs_single_solution(model, analysis)
         comm, phases = self.bodies[0].mesh.comm, Phases(observer.phase)
         return build(model, comm, phases, parts=parts, single=single)
 
-    def _model(self, closes_by_wear: bool) -> Model:
+    def _model(self, analysis: Analysis) -> Model:
         meshes = self.meshes
         held = {surface.body: surface for holder in self.holders for surface in holder.surfaces}
         number(self.degree, "Model.degree", 1, 10)
@@ -231,7 +234,7 @@ class ScriptedModel:
             bodies=tuple(
                 body.in_model(meshes.surfaces_of(body), held.get(body)) for body in self.bodies
             ),
-            interfaces=tuple(self._interface(pair, closes_by_wear) for pair in self.interfaces),
+            interfaces=tuple(self._interface(pair, analysis) for pair in self.interfaces),
             holders=tuple(self._holder(holder, dim) for holder in self.holders),
             meshes=meshes,
             discretisation=Discretisation(self.degree, solver=self.solver),
@@ -244,9 +247,11 @@ class ScriptedModel:
         _check_surfaces(model, meshes.tagged.surfaces)
         return model
 
-    def _interface(self, pair: FacePair, closes_by_wear: bool) -> Interface:
+    def _interface(self, pair: FacePair, analysis: Analysis) -> Interface:
         """Interface with the held face of a pair first, or that of a body at rest."""
         order = self.bodies if self._is_pair else [None, *self.motions]
+        if isinstance(analysis, ReciprocatingAnalysis) and not self._is_pair:
+            order = [face.body for face in pair.faces]
         first, second = sorted(
             pair.faces, key=lambda face: order.index(face.body) if face.body in order else 0
         )
@@ -255,7 +260,8 @@ class ScriptedModel:
             for given in (self.motions.get(face.body) for face in (first, second))
         )
         motion = relative_motion(one, other, self.kinematics == "axisymmetric")
-        found = pair.in_model(self.bodies, (first, second), motion, closes_by_wear)
+        closes = not isinstance(analysis, FrettingAnalysis)
+        found = pair.in_model(self.bodies, (first, second), motion, closes)
         return replace(found, name="") if self._is_pair else found
 
     def _holder(self, holder: SurfaceHolder, dim: int) -> Holder:

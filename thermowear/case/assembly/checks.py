@@ -184,7 +184,7 @@ def _motions(case: AssemblyCase) -> Iterator[Fault]:
     if case.analysis.type == "steady" and not case.wear:
         yield "wear", "missing; a steady analysis needs the wear law of a body"
     heated = case.heat is not None and not case.heat.driven
-    if not case.motions and (case.wear or heated):
+    if not case.motions and (case.wear or heated) and not case.analysis.cyclic:
         yield "motions", "missing; wear and friction heat need a sliding body: [motions.NAME]"
 
 
@@ -234,7 +234,7 @@ def _needed(case: AssemblyCase, part: str) -> dict[str, str]:
     """Properties that a part must have, and why."""
     needed, storing = {"young_modulus": "", "poisson_ratio": ""}, ("density", "specific_heat")
     heat = case.heat
-    if heat is None:
+    if heat is None or case.analysis.cyclic:
         return needed
     needed |= dict.fromkeys(("conductivity", "expansion"), " because the case has a [heat] table")
     if heat.transient:
@@ -248,6 +248,9 @@ def _heat(case: AssemblyCase) -> Iterator[Fault]:
     """Heat needs a sink, and one condition a surface."""
     heat = case.heat
     if heat is None:
+        return
+    if case.analysis.cyclic:
+        yield "heat", f"is not supported in a {case.analysis.type} analysis"
         return
     faces = {face for contact in case.contacts.values() for face in contact.between or ()}
     for key in _ON_SURFACES:

@@ -59,7 +59,8 @@ class AssemblyGeometry(Section):
 
     def __init_subclass__(cls, **kwargs: Any):
         super().__init_subclass__(**kwargs)
-        KNOWN[cls.name] = cls
+        if cls.__dict__.get("name"):  # bases of several geometries have none
+            KNOWN[cls.name] = cls
 
     @property
     @abstractmethod

@@ -7,7 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ...errors import CaseError
-from ..tables.analyses import Initial, Stability, Steady, Transient
+from ...laws.time_course import LoadHistories
+from ..tables.analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from ..tables.conditions import HeatTable
 from ..tables.contact import InterfaceTable
 from ..tables.materials import Properties, cell_sets, located_material
@@ -49,7 +50,10 @@ class AssemblyCase(Section):
     motions: dict[str, BodyMotionTable] = {}
     wear: WearTable = WearTable()
     heat: HeatTable | None = None
-    analysis: Annotated[Initial | Steady | Transient | Stability, Field(discriminator="type")]
+    analysis: Annotated[
+        Initial | Steady | Transient | Fretting | Reciprocating | Stability,
+        Field(discriminator="type"),
+    ]
 
     @model_validator(mode="after")
     def _cell_sets_as_parts(self):
@@ -106,8 +110,23 @@ class AssemblyCase(Section):
         return [shape for shape in shapes if shape is not None]
 
     @property
-    def cycles(self) -> None:
-        """No analysis of several bodies has cycles."""
+    def cycles(self) -> float | None:
+        """Number of cycles of the loads; None if none is given."""
+        in_analysis = getattr(self.analysis, "cycles", None)
+        return self.wear.cycles if in_analysis is None else in_analysis
+
+    @property
+    def reciprocation(self) -> tuple[float, float] | None:
+        """Largest amplitude [m] and frequency [Hz] of reciprocating bodies; None without any."""
+        each = [(m.amplitude, m.frequency) for m in self.motions.values()]
+        given = [(x, f) for x, f in each if x is not None and f is not None]
+        return max(given, default=None)
+
+    @property
+    def load_histories(self) -> LoadHistories:
+        """Load histories of the holders that have one."""
+        each = [h.history.loads for h in self.holders.values() if h.history is not None]
+        return LoadHistories(tuple(each))
 
     def tagged_mesh(self):
         """Mesh of the case.

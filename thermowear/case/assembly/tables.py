@@ -124,7 +124,8 @@ class AssemblyHolderTable(Section):
                 raise KeyFault("closing_moment", 'needs free = ["rotation"]')
             if any(load is not None for load in loads):
                 raise KeyFault("closing_moment", "cannot be given together with other loads")
-        if not self.free and any(load is not None for load in loads):
+        moved = self.history is not None and self.history.loads.only_tangential
+        if not self.free and any(load is not None for load in (loads[:-1] if moved else loads)):
             raise KeyFault("free", "is empty: a fixed holder takes no loads")
         if self.direction is not None and not any(self.direction):
             raise KeyFault("direction", "has no length")
@@ -144,19 +145,34 @@ class BodyMotionTable(Section):
         x and y of the centre, or of the axis along z [m].
     across : bool
         True if the velocity is normal to a plane section.
+    amplitude, frequency : float or None
+        Reciprocating motion ``x = amplitude sin(2 π frequency t)`` [m, Hz].
     """
 
     velocity: units.Velocity | None = None
     angular_velocity: units.AngularVelocity | None = None
+    amplitude: units.Length | None = None
+    frequency: units.Frequency | None = None
     center: tuple[units.Coordinate, units.Coordinate] = (0.0, 0.0)
     across: Switch = False
     history: FactorHistory | None = None
 
     @model_validator(mode="after")
     def _one(self):
-        if (self.velocity is None) == (self.angular_velocity is None):
+        if (self.amplitude is None) != (self.frequency is None):
+            key = "amplitude" if self.amplitude is None else "frequency"
+            raise KeyFault(key, "missing; a reciprocating motion has amplitude and frequency")
+        given = self.velocity, self.angular_velocity, self.amplitude
+        if sum(value is not None for value in given) != 1:
             raise KeyFault("velocity", "give either velocity or angular_velocity")
         return self
+
+    @property
+    def mean_velocity(self) -> float | None:
+        """Velocity along x; the mean speed of a reciprocating motion [m/s]."""
+        if self.amplitude is None or self.frequency is None:
+            return self.velocity
+        return 4 * self.amplitude * self.frequency
 
 
 class AssemblyBodyTable(BodyTable):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
@@ -11,13 +11,19 @@ from ..values import units
 from ..values.section import KeyFault, Number, Section, number_or
 
 
-class Initial(Section):
+class OneWay(Section):
+    """Base of analyses of one state, or in time, of faces that do not move back and forth."""
+
+    cyclic: ClassVar[bool] = False
+
+
+class Initial(OneWay):
     """Contact of the unworn faces."""
 
     type: Literal["initial"]
 
 
-class Steady(Section):
+class Steady(OneWay):
     """Steady state of wear, computed without time stepping."""
 
     type: Literal["steady"]
@@ -36,7 +42,7 @@ def _distinct(output_times: tuple[float, ...]) -> tuple[float, ...]:
     return output_times
 
 
-class Timed(Section):
+class Timed(OneWay):
     """Base of analyses in time, see `model.analyses.TimedAnalysis`."""
 
     type: str
@@ -81,6 +87,8 @@ class Reciprocating(Timed):
         Number of cycles, instead of an end time; equivalent to ``wear.cycles``.
     """
 
+    cyclic: ClassVar[bool] = True
+
     type: Literal["reciprocating"]
     cycles: Annotated[Number, Field(gt=0.0)] | None = None
     positions: Annotated[int, Field(ge=2, le=200, strict=True)] = 12
@@ -94,7 +102,7 @@ class Reciprocating(Timed):
         return self
 
 
-class Stability(Section):
+class Stability(OneWay):
     """Thermoelastic instability of the contact: critical speed and unstable mode."""
 
     type: Literal["stability"]
@@ -116,6 +124,8 @@ class Fretting(Section):
         Number of repetitions of the cycle of the history, equivalent to ``wear.cycles``; one by
         default.
     """
+
+    cyclic: ClassVar[bool] = True
 
     type: Literal["fretting"]
     increments: Annotated[int, Field(ge=1, strict=True)] = 20

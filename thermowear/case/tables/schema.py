@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ...errors import CaseError
+from ...laws.time_course import LoadHistories
 from ..values.section import Number, Section
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
@@ -148,6 +149,20 @@ class Case(Section):
     def contact_tables(self) -> dict[str, InterfaceTable]:
         """Tables of the contacts by their path."""
         return {"contact": self.contact}
+
+    @property
+    def reciprocation(self) -> tuple[float, float] | None:
+        """Amplitude [m] and frequency [Hz] of a reciprocating motion; None without one."""
+        motion = self.motion
+        if motion is None or motion.amplitude is None or motion.frequency is None:
+            return None
+        return motion.amplitude, motion.frequency
+
+    @property
+    def load_histories(self) -> LoadHistories:
+        """Load history of the holder, if it has one."""
+        history = self.load.history
+        return LoadHistories(() if history is None else (history.loads,))
 
     @property
     def histories(self) -> dict[str, TimeHistory]:

@@ -189,7 +189,7 @@ def _force_history(case: Case, history: History) -> Iterator[Fault]:
         yield "load.history", "has no effect: the holder is fixed (holder.free = [])"
 
 
-def cycles(case: Case) -> Iterator[Fault]:
+def cycles(case: AnyCase) -> Iterator[Fault]:
     """The number of cycles is given once; `max_jump` limits automatic jumps only."""
     analysis, wear = case.analysis, case.wear
     if wear.cycles is not None and getattr(analysis, "cycles", None) is not None:
@@ -214,22 +214,30 @@ def fretting(case: Case) -> Iterator[Fault]:
     elif history.tangential and case.geometry.symmetry:
         yield "geometry.half", "tangential loads are not symmetric; mesh the whole section"
     else:
-        yield from _cycles_of_loads(case, analysis)
+        yield from cycles_of_loads(case, analysis, "load.history")
 
 
-def _cycles_of_loads(case: Case, analysis: Fretting) -> Iterator[Fault]:
-    """Cycles need a closed load cycle; output times lie within the history and its repetitions."""
-    assert case.load.history is not None
-    loads, count = case.load.history.loads, int(case.cycles or 1)
+def cycles_of_loads(case: AnyCase, analysis: Fretting, path: str) -> Iterator[Fault]:
+    """Cycles need a closed load cycle; output times lie within the history and its repetitions.
+
+    Parameters
+    ----------
+    case : AnyCase
+    analysis : Fretting
+        Its analysis.
+    path : str
+        Path of the tables of the histories.
+    """
+    loads, count = case.load_histories, int(case.cycles or 1)
     start, end = loads.time[0], loads.end(count)
     if loads.cycle is None and count > 1:
         yield (
             "analysis.cycles" if case.wear.cycles is None else "wear.cycles",
-            "no earlier instant of load.history has the loads of its last one: no cycle to repeat",
+            f"no earlier instant of {path} has the loads of its last one: no cycle to repeat",
         )
     late = [t for t in analysis.output_times if not start <= t <= end]
     if late:
-        where = "load.history.time" if count == 1 else "the cycles"
+        where = f"{path}.time" if count == 1 else "the cycles"
         limits = f"from {start:g} s to {end:g} s"
         yield "analysis.output_times", f"{late[0]:g} s lies outside {where}, {limits}"
 

@@ -12,7 +12,7 @@ from ..assembly.checks import check as check_tables
 from ..assembly.schema import AssemblyCase
 from ..assembly.tables import SUPPORTS
 from ..values.section import Fault
-from . import materials
+from . import cyclic_assembly, materials
 from .analyses import varying
 from .assembly_histories import histories
 from .layer_wear import layer_wear
@@ -61,7 +61,7 @@ def _supports(case: AssemblyCase) -> Iterator[Fault]:
 def _sliding(case: AssemblyCase) -> Iterator[Fault]:
     """Sliding along x is not symmetric about a plane x = const."""
     drags = any(contact.nominal_friction > 0.0 for contact in case.contacts.values())
-    along = any(of.velocity is not None and not of.across for of in case.motions.values())
+    along = any(of.mean_velocity is not None and not of.across for of in case.motions.values())
     for body, table in case.bodies.items():
         if table.symmetry and drags and along:
             yield (
@@ -92,4 +92,8 @@ _CHECKS = (
     layer_wear,
     part_wear,
     _carried,
+    cyclic_assembly.unsupported,
+    cyclic_assembly.fretting,
+    cyclic_assembly.reciprocating,
+    cyclic_assembly.one_way,
 )

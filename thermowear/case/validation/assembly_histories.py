@@ -6,18 +6,16 @@ from collections.abc import Iterator
 
 from ..assembly.schema import AssemblyCase
 from ..assembly.tables import AssemblyHolderTable
-from ..tables.analyses import Fretting
 from ..values.section import Fault
 
-_CYCLIC = ("cycles", "max_jump")
 _NOT_FORCE = ("approach", "tangential_force", "tangential_displacement", "cycle_start")
 _UNVARIED = ("moments", "tangential_force", "closing_moment")
 
 
 def histories(case: AssemblyCase) -> Iterator[Fault]:
-    """Histories are for analyses in time, and have no steady state."""
+    """Histories are for transient analyses, beside cyclic ones, and have no steady state."""
     analysis = case.analysis
-    if isinstance(analysis, Fretting):
+    if analysis.cyclic:
         return
     for path in case.histories if analysis.type != "transient" else ():
         yield path, f"requires a transient analysis, not {analysis.type}"
@@ -29,9 +27,6 @@ def histories(case: AssemblyCase) -> Iterator[Fault]:
     for path, contact in case.contact_tables.items():
         if contact.friction_history is not None and contact.nominal_friction == 0.0:
             yield f"{path}.friction_history", f"has no effect: {path}.friction is 0"
-    for key in _CYCLIC:
-        if getattr(case.wear, key) is not None:
-            yield f"wear.{key}", "requires a fretting or reciprocating analysis"
 
 
 def _of_holder(path: str, holder: AssemblyHolderTable) -> Iterator[Fault]:
@@ -39,11 +34,11 @@ def _of_holder(path: str, holder: AssemblyHolderTable) -> Iterator[Fault]:
     history = holder.history
     if history is None:
         return
-    for key in _NOT_FORCE:
-        if getattr(history, key) is not None:
-            text = "requires a fretting analysis; a transient one supports force only"
-            yield f"{path}.history.{key}", text
-    if history.force is None:
+    refused = [key for key in _NOT_FORCE if getattr(history, key) is not None]
+    for key in refused:
+        text = "requires a fretting analysis; a transient one supports force only"
+        yield f"{path}.history.{key}", text
+    if history.force is None and not refused:
         yield f"{path}.history.force", "missing; required in a transient analysis"
     for key in _UNVARIED:
         if getattr(holder, key):

@@ -135,7 +135,7 @@ def _spread(case: Case) -> Iterator[Fault]:
             why = f"only {moving} passes under the other body; leave it out"
         elif not geometry.passes and geometry.sector == 1.0:
             why = f"the whole face of {moving} is always in contact; leave it out"
-        elif type_ in ("fretting", "reciprocating"):
+        elif case.analysis.cyclic:
             why = f"not supported in a {type_} analysis: body 2 does not pass by"
         elif type_ == "steady" and len(case.wear) == 1 and geometry.sector == 1.0:
             why = (
@@ -162,7 +162,7 @@ def _in_space(case: Case) -> Iterator[Fault]:
         yield "contact.transverse_friction", "not supported in 3d models"
     elif case.contact.pressure_degree == "lobatto":
         yield "contact.pressure_degree", "not supported in 3d models"
-    if case.analysis.type in ("fretting", "reciprocating"):
+    if case.analysis.cyclic:
         yield "analysis.type", f"{case.analysis.type!r} is not supported in 3d models"
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..any_case import AnyCase
-from ..assembly.schema import AssemblyCase
 from ..tables.analyses import Fretting, Reciprocating, Timed
 from ..tables.schema import as_plain
 from ..values.section import Section
@@ -83,18 +82,14 @@ def _truncated(value: Any) -> str:
 def _end_time(case: AnyCase) -> float | None:
     """Latest end time of an analysis that can be extended [s]."""
     settings = case.analysis
-    if isinstance(case, AssemblyCase):
-        return None if not isinstance(settings, Timed) else settings.end_time or float("inf")
     if isinstance(settings, Fretting):
-        assert case.load.history is not None  # the case has been checked
-        return case.load.history.loads.end(int(case.cycles or 1))
+        return case.load_histories.end(int(case.cycles or 1))
     if not isinstance(settings, Timed):
         return None
     count = case.cycles
     if isinstance(settings, Reciprocating) and count is not None:
-        assert case.motion is not None
-        assert case.motion.frequency is not None
-        return count / case.motion.frequency
+        assert case.reciprocation is not None  # the case has been checked
+        return count / case.reciprocation[1]
     return float("inf") if settings.end_time is None else settings.end_time
 
 

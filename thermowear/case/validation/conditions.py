@@ -192,7 +192,7 @@ def heat(case: Case) -> Iterator[Fault]:
             '"spread" needs a mesh with rows of elements along the path of body 2; the mesh of '
             f'{case.geometry.type!r} has none: use "resolved"',
         )
-    if case.analysis.type in ("fretting", "reciprocating"):  # do not support heat
+    if case.analysis.cyclic:  # do not support heat
         return
     if heat.transient and case.analysis.type != "transient":
         yield "heat.transient", f"requires a transient analysis, not {case.analysis.type}"

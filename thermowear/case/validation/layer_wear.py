@@ -10,8 +10,6 @@ from ..tables.schema import Case
 from ..tables.wear import BodyWearTable
 from ..values.section import Fault
 
-_CYCLIC = ("fretting", "reciprocating")
-
 
 def layer_wear(case: AnyCase) -> Iterator[Fault]:
     """Layers cover a face of one material, and their laws have what they depend on."""
@@ -21,7 +19,7 @@ def layer_wear(case: AnyCase) -> Iterator[Fault]:
         path = f"wear.{body}.layers"
         if wear.materials:
             yield path, "is not supported together with materials; the face must be of one material"
-        if case.analysis.type in _CYCLIC:
+        if case.analysis.cyclic:
             yield path, f"is not supported in a {case.analysis.type} analysis"
         yield from _state(case, path, wear)
         for table, contact in _contacts(case, body):

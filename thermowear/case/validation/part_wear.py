@@ -8,8 +8,6 @@ from ..any_case import AnyCase
 from ..tables.materials import part_named
 from ..values.section import Fault
 
-_CYCLIC = ("fretting", "reciprocating")
-
 
 def part_wear(case: AnyCase) -> Iterator[Fault]:
     """Wear laws of parts name parts of the body, which wears in place, in one direction."""
@@ -27,7 +25,7 @@ def part_wear(case: AnyCase) -> Iterator[Fault]:
         for name in by_name:
             if part_named(geometry, body, name) is None:
                 yield f"{path}.{name}", f"unknown part; must be one of: {', '.join(known)}"
-        if type_ in _CYCLIC:
+        if case.analysis.cyclic:
             yield path, f"is not supported in a {type_} analysis"
         if wear.spread != "in-place":
             yield path, f'requires spread = "in-place"; found {wear.spread!r}'

@@ -189,20 +189,35 @@ def _by_lemke(problem: CoulombProblem) -> np.ndarray | None:
     return scale * np.concatenate([x, np.linalg.solve(mixing, forward - back)])
 
 
-def check_gross_slip(problem: CoulombProblem, pressed: bool) -> None:
-    """Raise if the contact in gross slip carries less than the tangential force.
+def check_gross_slip(problem: CoulombProblem, presses: np.ndarray, mode: int, holder: str) -> None:
+    """Raise if the contacts carry less than a tangential force when they slip along its motion.
 
     In gross slip the shear is a multiple of the pressure, which then solves a Signorini problem.
+    Contacts that the motion does not slide are taken as frictionless.
+
+    Parameters
+    ----------
+    problem : CoulombProblem
+    presses : ndarray of bool, shape (k,)
+        True for the motions along load directions, which are free in gross slip.
+    mode : int
+        Motion along the tangential force.
+    holder : str
+        Subject of the message.
+
+    Raises
+    ------
+    FullSliding, ComputationError
     """
-    m, k = len(problem.friction), int(pressed)
-    asked = problem.force[k]
-    across = problem.modes[m : 2 * m, k] * np.sign(asked)
+    m = len(problem.friction)
+    asked = problem.force[mode]
+    across = problem.modes[m : 2 * m, mode] * np.sign(asked)
     drag = problem.friction * np.sign(across)  # τ = drag λ opposes the force
     compliance = problem.compliance[:m, :m] + problem.compliance[:m, m : 2 * m] * drag
-    modes = problem.modes[:m, :k]
-    carrying = modes + drag[:, None] * problem.modes[m : 2 * m, :k]
+    modes = problem.modes[:m, presses]
+    carrying = modes + drag[:, None] * problem.modes[m : 2 * m, presses]
     sliding = solve_contact(
-        compliance, problem.offset[:m], modes, problem.force[:k], force_modes=carrying
+        compliance, problem.offset[:m], modes, problem.force[presses], force_modes=carrying
     )
     λ = sliding.coefficients
     if not np.any(λ > 0):
@@ -210,9 +225,9 @@ def check_gross_slip(problem: CoulombProblem, pressed: bool) -> None:
             "contact: the bodies do not touch, so that nothing balances a tangential force; give a "
             "tangential displacement, or press"
         )
-    most = problem.modes[:m, k] @ λ + problem.modes[m : 2 * m, k] @ (drag * λ)
+    most = problem.modes[:m, mode] @ λ + problem.modes[m : 2 * m, mode] @ (drag * λ)
     if abs(asked) >= (1 - 1e-9) * abs(most):
         raise FullSliding(
-            f"contact: body 1 slides; friction carries {abs(most):.6g} N, and the tangential force "
+            f"{holder} slides; friction carries {abs(most):.6g} N, and the tangential force "
             f"is {abs(asked):.6g} N. Give a smaller force, or a tangential displacement"
         )

@@ -22,8 +22,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from ...laws.interfaces import Law, LocalState
+from ..operators.pressure import function_ranges
+from ..search.contacts import Contacts
 from ..search.pairing import Pairing
 from ..wear.track import hat_functions
 from .stick_slip_state import StickSlipState
@@ -36,7 +39,7 @@ class WornProfile:
     Attributes
     ----------
     places : ndarray, shape (m,)
-        Positions of the basis functions, arc length along the face, which runs along +x [m].
+        Positions of the basis functions, arc length along the face [m].
     areas : ndarray, shape (m,)
         Areas of the basis functions [m²].
     shift_per_slip : float
@@ -59,20 +62,50 @@ class WornProfile:
         return self.interpolation(slip).T * self.areas / self.areas[:, None]
 
 
-def profile(pairing: Pairing, weighted: np.ndarray, body: int) -> WornProfile:
-    """Worn profile of a body (0 is body 1) in the basis of the pressure.
+@dataclass(frozen=True)
+class WornProfiles:
+    """Worn profiles of the first, or of the second bodies of all interfaces.
+
+    Attributes
+    ----------
+    each : tuple of WornProfile
+        Profile at each interface.
+    """
+
+    each: tuple[WornProfile, ...]
+
+    def interpolation(self, travel: np.ndarray) -> np.ndarray:
+        """Matrix L for the slips of the interfaces (n_interfaces,), shape (m, m)."""
+        pairs = zip(self.each, travel, strict=True)
+        return block_diag(*(profile.interpolation(slip) for profile, slip in pairs))
+
+    def wear_transfer(self, travel: np.ndarray) -> np.ndarray:
+        """Coefficients of the profiles from the depths worn at the contacts, shape (m, m)."""
+        pairs = zip(self.each, travel, strict=True)
+        return block_diag(*(profile.wear_transfer(slip) for profile, slip in pairs))
+
+
+def worn_profiles(contacts: Contacts, weighted: np.ndarray, side: int) -> WornProfiles:
+    """Worn profiles of the first (side 0) or of the second bodies in the basis of the pressure.
 
     Parameters
     ----------
-    pairing : Pairing
-        Contact points of a plane model.
+    contacts : Contacts
+        Contact points of a plane or axisymmetric model.
     weighted : ndarray, shape (n, m)
         ``diag(w) Ψ``.
-    body : int
+    side : int
     """
+    ranges = zip(contacts, function_ranges(contacts, weighted), strict=True)
+    each = (_profile(pairing, weighted[own, chosen], side) for (pairing, own), chosen in ranges)
+    return WornProfiles(tuple(each))
+
+
+def _profile(pairing: Pairing, weighted: np.ndarray, side: int) -> WornProfile:
+    """Worn profile at one interface."""
     areas = weighted.sum(axis=0)
     share = float(pairing.weights @ pairing.share / pairing.weights.sum())
-    shift_per_slip = 1.0 - share if body == 0 else -share
+    shift_per_slip = 1.0 - share if side == 0 else -share
     return WornProfile((pairing.position @ weighted) / areas, areas, shift_per_slip)
 
 
@@ -83,10 +116,11 @@ class SlipWear:
     Attributes
     ----------
     laws : tuple of Law
-        Wear laws of the wearing bodies, independent of temperature and depth.
-    profiles : tuple of WornProfile
-        Worn profiles of the same bodies.
-    friction : float
+        Wear laws of the first, of the second faces or of both, independent of temperature and
+        depth.
+    profiles : tuple of WornProfiles
+        Worn profiles of the same faces.
+    friction : float or ndarray, shape (m,)
         Coefficient of friction.
     duration : float
         Duration of the increment; no wear if it is 0 [s].
@@ -95,16 +129,16 @@ class SlipWear:
     """
 
     laws: tuple[Law, ...]
-    profiles: tuple[WornProfile, ...]
-    friction: float
+    profiles: tuple[WornProfiles, ...]
+    friction: float | np.ndarray
     duration: float
     repeats: int = 1
 
-    def depth_at_contact(self, worn: np.ndarray, displacement: float) -> np.ndarray:
+    def depth_at_contact(self, worn: np.ndarray, travel: np.ndarray) -> np.ndarray:
         """Total worn depth at the contact from the profiles, shape (n_wearing, m) to (m,) [m]."""
         depth = np.zeros(worn.shape[1])
         for own, profile in zip(worn, self.profiles, strict=True):
-            depth += profile.interpolation(displacement) @ own
+            depth += profile.interpolation(travel) @ own
         return depth
 
     def depths(self, pressure: np.ndarray, slip: np.ndarray) -> np.ndarray:
@@ -149,28 +183,29 @@ class IncrementWear:
         State at the start of the increment.
     areas : ndarray, shape (m,)
         Areas of the basis functions [m²].
-    displacement : float
-        Displacement of body 1 along +x at the end of the increment [m].
+    travel : ndarray, shape (n_interfaces,)
+        Displacement of the first bodies along the faces at the end of the increment, see
+        `FrictionalContact` [m].
     """
 
     wear: SlipWear
     before: StickSlipState
     areas: np.ndarray
-    displacement: float
+    travel: np.ndarray
 
     @cached_property
     def wear_transfer(self) -> np.ndarray:
         """Profile of each body from its depth worn at the contact, shape (n_wearing, m, m)."""
-        return self._of_profiles(WornProfile.wear_transfer)
+        return self._of_profiles(WornProfiles.wear_transfer)
 
     @cached_property
     def depth_per_wear(self) -> np.ndarray:
         """Depth of each profile at the contact from the depth worn there, (n_wearing, m, m)."""
-        return self._of_profiles(WornProfile.interpolation) @ self.wear_transfer
+        return self._of_profiles(WornProfiles.interpolation) @ self.wear_transfer
 
-    def _of_profiles(self, matrix: Callable[[WornProfile, float], np.ndarray]) -> np.ndarray:
+    def _of_profiles(self, matrix: Callable[[WornProfiles, np.ndarray], np.ndarray]) -> np.ndarray:
         m = len(self.areas)
-        each = [matrix(profile, self.displacement) for profile in self.wear.profiles]
+        each = [matrix(profile, self.travel) for profile in self.wear.profiles]
         return np.reshape(each, (-1, m, m))
 
     def value(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:

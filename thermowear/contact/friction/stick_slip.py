@@ -59,14 +59,12 @@ def advance(
     """
     given = loads.motions
     if len(given) != len(state.motion):
-        raise ValueError(f"loads: the holder has {len(state.motion)} motions, not {len(given)}")
+        raise ValueError(f"loads: the holders have {len(state.motion)} motions, not {len(given)}")
     friction = np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure))
     mean = contact.mass
-    # tangential: given at the end, or the current one if free
-    displacement = float(np.where(np.isnan(given), state.motion, given)[1:].sum())
-    worn = (
-        state.worn.sum(axis=0) if wear is None else wear.depth_at_contact(state.worn, displacement)
-    )
+    # motions given at the end, or the current ones if free
+    travel = contact.travel @ np.where(np.isnan(given), state.motion, given)
+    worn = state.worn.sum(axis=0) if wear is None else wear.depth_at_contact(state.worn, travel)
 
     def solve(lost: np.ndarray, slope: np.ndarray, guess: StickSlipState) -> StickSlipState:
         """Solve contact with the worn depths ``lost + slope λ``."""
@@ -79,7 +77,7 @@ def advance(
     after = solve(no_slope[0], no_slope, state)
     if wear is None:
         return after
-    by_slip = IncrementWear(wear, state, mean.sum(axis=1), displacement)
+    by_slip = IncrementWear(wear, state, mean.sum(axis=1), travel)
     if by_slip.value(after.pressure, after).any():
         after = newton_with_wear(solve, by_slip, after, _WEAR_TOLERANCE, _NOT_CONVERGED)
     depths = by_slip.profiles(after)
@@ -98,14 +96,16 @@ def _increment(contact, friction, state, guess, loads: Loads, compliance, gap) -
     start = contact.stack(gap, -state.slip) - contact.modes @ fixed
     modes = contact.modes[:, free]
     problem = CoulombProblem(compliance, start, modes, loads.forces[free], friction)
-    closed = _predicted_active(problem, guess.pressure > 0, bool(free[0]))
+    presses, slides = contact.with_role("press")[free], contact.with_role("slide")[free]
+    closed = _predicted_active(problem, guess.pressure > 0, presses)
     near = None
     if guess is not state:
         near = np.append(contact.stack(guess.pressure, guess.shear), guess.motion[free])
     solution = solve_by_newton(problem, closed, near)
     if solution is None:
-        if len(free) > 1 and free[1]:
-            check_gross_slip(problem, bool(free[0]))
+        holders = [held.holder for held, is_free in zip(contact.held, free, strict=True) if is_free]
+        for mode in np.flatnonzero(slides):
+            check_gross_slip(problem, presses, mode, holders[mode])
         solution = solve_with_fallbacks(problem, closed)
     return _state_after(contact, state, solution, free, fixed)
 
@@ -134,12 +134,18 @@ def _state_after(contact, state, solution: CoulombSolution, free, fixed) -> Stic
     )
 
 
-def _predicted_active(problem: CoulombProblem, closed: np.ndarray, pressed: bool) -> np.ndarray:
-    """Predicted active coefficients: the current ones, initially those without friction."""
+def _predicted_active(
+    problem: CoulombProblem, closed: np.ndarray, presses: np.ndarray
+) -> np.ndarray:
+    """Predicted active coefficients: the current ones, initially those without friction.
+
+    Without friction only the motions that press are free; a motion that closes no gap is not.
+    """
     if np.any(closed):
         return closed
-    m, k = len(closed), int(pressed)
-    modes, force = problem.modes[:m, :k], problem.force[:k]
+    m = len(closed)
+    presses = presses & np.any(problem.modes[:m] != 0.0, axis=0)
+    modes, force = problem.modes[:m, presses], problem.force[presses]
     return solve_contact(problem.compliance[:m, :m], problem.offset[:m], modes, force).active
 
 
@@ -160,7 +166,7 @@ def follow(
         See `advance`.
     corners : iterable of Loads
         Loads at the corners, each reached linearly from the state before; along a motion, control
-        may change between force and translation.
+        may change between force and displacement.
     increments : int
         Number between two corners; an increment is halved if no solution is found.
     state : StickSlipState, optional

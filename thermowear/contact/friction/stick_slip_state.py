@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
@@ -33,7 +33,7 @@ class StickSlipState:
     slip : ndarray, shape (m, t)
         Weak slip of body 1 over body 2 since the unloaded state, open contact included [m³].
     motion, force : ndarray, shape (k,)
-        Translations of the holder and its forces on body 1 [m, N].
+        Motions of the holders and their forces on the bodies [m or rad, N or N m].
     status : ndarray of int, shape (m,)
         `Status` of each coefficient in the last increment.
     point_slip : ndarray, shape (n, t)
@@ -78,40 +78,27 @@ def unloaded(contact: FrictionalContact, wearing: int = 0) -> StickSlipState:
 
 @dataclass(frozen=True)
 class Loads:
-    """Force or translation along each motion of the holder of body 1 at one instant.
+    """Force or displacement along each motion of the holders at one instant.
 
     Attributes
     ----------
-    normal_force, tangential_force : float or None
-        Forces of the holder on body 1 along its motions [N].
-    approach, tangential_displacement : float or None
-        Translations of the holder [m]. Exactly one of force and translation is given along each
-        motion; neither in the tangential direction if the holder only moves in the normal one.
+    forces : ndarray, shape (k,)
+        Generalised force of the holder, NaN if the motion is given [N or N m].
+    motions : ndarray, shape (k,)
+        Amount of the motion, NaN if the force is given [m or rad].
+
+    Raises
+    ------
+    ValueError
+        Unless exactly one of them is given along each motion.
     """
 
-    normal_force: float | None = None
-    approach: float | None = None
-    tangential_force: float | None = None
-    tangential_displacement: float | None = None
+    forces: np.ndarray
+    motions: np.ndarray
 
-    @property
-    def forces(self) -> np.ndarray:
-        """Force along each motion, NaN if the translation is given, shape (k,) [N]."""
-        return self._pairs[:, 0]
-
-    @property
-    def motions(self) -> np.ndarray:
-        """Translation along each motion, NaN if the force is given, shape (k,) [m]."""
-        return self._pairs[:, 1]
-
-    @property
-    def _pairs(self) -> np.ndarray:
-        normal = (self.normal_force, self.approach)
-        tangential = (self.tangential_force, self.tangential_displacement)
-        pairs = [normal] if tangential == (None, None) else [normal, tangential]
-        if any((force is None) == (motion is None) for force, motion in pairs):
+    def __post_init__(self):
+        if np.any(np.isnan(self.forces) == np.isnan(self.motions)):
             raise ValueError("loads: give either force or translation along each motion")
-        return np.array(pairs, dtype=float)
 
     def after(self, force: np.ndarray, motion: np.ndarray, part: float) -> Loads:
         """Loads interpolated linearly from a state to these loads.
@@ -119,12 +106,10 @@ class Loads:
         Parameters
         ----------
         force, motion : ndarray, shape (k,)
-            Forces and translations of the holder in that state [N, m].
+            Forces and motions of the holders in that state.
         part : float
             0 at the state, 1 at these loads.
         """
-
-        def between(start: float, end: float | None) -> float | None:
-            return None if end is None else float((1 - part) * start + part * end)
-
-        return Loads(*map(between, np.column_stack([force, motion]).ravel(), astuple(self)))
+        return Loads(
+            (1 - part) * force + part * self.forces, (1 - part) * motion + part * self.motions
+        )

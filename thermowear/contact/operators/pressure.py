@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TypeAlias
 
 import numpy as np
@@ -109,11 +110,17 @@ def joined_bases(each: Sequence[Basis]) -> Basis:
     return each[0] if len(each) == 1 else sp.csr_array(sp.block_diag(each, format="csr"))
 
 
+def function_ranges(contacts: Contacts, basis: Basis) -> tuple[slice, ...]:
+    """Range of the pressure functions of each interface."""
+    if len(contacts.each) == 1:
+        return (slice(0, basis.shape[1]),)
+    counts = [len(np.unique(basis[own].nonzero()[1])) for own in contacts.ranges]
+    return tuple(slice(int(a), int(b)) for a, b in pairwise([0, *np.cumsum(counts)]))
+
+
 def functions_by_interface(contacts: Contacts, basis: Basis) -> np.ndarray:
     """Number of the pressure functions of the interface that each point lies on, shape (n,)."""
-    if len(contacts.each) == 1:
-        return np.full(basis.shape[0], basis.shape[1])
-    return contacts.per_point([len(np.unique(basis[own].nonzero()[1])) for own in contacts.ranges])
+    return contacts.per_point([own.stop - own.start for own in function_ranges(contacts, basis)])
 
 
 def jumps(pairing: Pairing) -> bool:

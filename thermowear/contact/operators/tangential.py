@@ -8,9 +8,9 @@ is the tangential displacement of body 1 relative to body 2::
 
     s = (u1 - u2)·e
 
-so that friction opposes it, ``t ds <= 0``, with the heat ``-t ds``. The holder moves body 1 by
+so that friction opposes it, ``t ds <= 0``, with the heat ``-t ds``. A holder moves body 1 by
 ``m d``: that changes gap and slip by ``-R d`` with ``R = (m·n, -m·e)``, and the force of the holder
-along m is ``F = Rᵀ w (p, t)``.
+along m is ``F = Rᵀ w (p, t)``. Both are reversed for a holder of body 2.
 
 Pressure and shear share the basis Ψ. Their coefficients are stacked: ``x = (λ, τ_1, τ_2 …)`` with
 one block per tangential direction, one in the plane. In weak form,
@@ -20,17 +20,44 @@ one block per tangential direction, one in the plane. In weak form,
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
 
 from ...bulk.mechanics.elasticity import Elasticity
+from ...laws.motions import RigidMotion
 from ...parallel import sum_over_ranks
 from ..search.contacts import Contacts
 from ..search.pairing import Pairing
-from .pressure import PressureSpace, scaled
+from .pressure import Basis, PressureSpace, dense, scaled
+from .rigid_motion import RigidMode, hold
 from .traces import vector_trace
+
+_NOISE = 1e-9
+"""Travel per unit of a motion, relative to the motion, below which it is rounding noise."""
+
+
+@dataclass(frozen=True)
+class HeldMotion:
+    """Motion of a holder, free or given.
+
+    Attributes
+    ----------
+    motion : RigidMotion
+    bodies : tuple of int
+        Indices of the bodies that move.
+    role : str
+        ``"press"`` along the load direction, ``"slide"`` across it, ``"other"``.
+    holder : str
+        Subject of messages about it.
+    """
+
+    motion: RigidMotion
+    bodies: tuple[int, ...] = (0,)
+    role: str = "other"
+    holder: str = "contact: body 1"
 
 
 @dataclass(frozen=True)
@@ -51,6 +78,11 @@ class FrictionalContact(PressureSpace):
         A, symmetric [m⁵/N].
     modes : ndarray, shape (M, k)
         Weak R [m²].
+    travel : ndarray, shape (n_interfaces, k)
+        Displacement of the first body over the second one, along increasing positions on the face,
+        per unit of each motion.
+    held : tuple of HeldMotion
+        The k motions.
     influence : ndarray, shape (n_owned, M)
         Displacement per coefficient [m/Pa]; weak gap and slips due to any nodal load f are
         ``influenceᵀ f``.
@@ -61,7 +93,13 @@ class FrictionalContact(PressureSpace):
     rigid: np.ndarray
     compliance: np.ndarray
     modes: np.ndarray
+    travel: np.ndarray
+    held: tuple[HeldMotion, ...]
     influence: np.ndarray
+
+    def with_role(self, role: str) -> np.ndarray:
+        """True for the motions with a role, shape (k,)."""
+        return np.array([motion.role == role for motion in self.held], dtype=bool)
 
     def stack(self, pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:
         """Coefficients λ, shape (m,), and τ, shape (m, t), as one vector x."""
@@ -83,6 +121,8 @@ def frictional_contact(
     gap: np.ndarray,
     response: np.ndarray,
     rigid: np.ndarray,
+    travel: np.ndarray,
+    held: Sequence[HeldMotion],
     influence: np.ndarray,
 ) -> FrictionalContact:
     """Assemble weak operators from responses at the points; arguments as in `FrictionalContact`.
@@ -94,9 +134,11 @@ def frictional_contact(
     """
     weighted = scaled(weights, basis)
     compliance = np.concatenate([weighted.T @ component for component in response])
-    modes = np.concatenate([weighted.T @ component for component in rigid])
+    modes = weak(weighted, rigid)
     compliance = (compliance + compliance.T) / 2
-    return FrictionalContact(basis, weighted, gap, response, rigid, compliance, modes, influence)
+    return FrictionalContact(
+        basis, weighted, gap, response, rigid, compliance, modes, travel, tuple(held), influence
+    )
 
 
 def tangents(normals: np.ndarray) -> np.ndarray:
@@ -114,32 +156,80 @@ def tangents(normals: np.ndarray) -> np.ndarray:
     return np.column_stack([-normals[:, 1], normals[:, 0]])[None]
 
 
+def forwards(directions: np.ndarray) -> np.ndarray:
+    """Signs that turn directions (n, 2) towards +x, or towards +y if they run along y, (n,)."""
+    x, y = directions.T
+    return np.where(np.where(np.abs(x) > _NOISE, x, y) < 0.0, -1.0, 1.0)
+
+
+def travel(contacts: Contacts, motion: HeldMotion) -> np.ndarray:
+    """Travel of the first body along the face of each interface, shape (n_interfaces,).
+
+    Along the mean tangent in the middle of the face, see `FrictionalContact`.
+    """
+    found = np.zeros(len(contacts.each))
+    for body in motion.bodies:
+        for index, pair in enumerate(contacts.bodies):
+            if body in pair:
+                middle, along = _middle(contacts.each[index])
+                moved = float(motion.motion.at(middle) @ along)
+                found[index] += moved if pair.index(body) == 0 else -moved
+    found[np.abs(found) < _NOISE * np.abs(found).max(initial=1.0)] = 0.0
+    return found
+
+
+def _middle(pairing: Pairing) -> tuple[np.ndarray, np.ndarray]:
+    """Middle of a face in the plane, and its mean tangent along increasing positions."""
+    mean = pairing.weights @ pairing.normals
+    along = tangents(mean[None])[0, 0] / np.linalg.norm(mean)
+    first, last = np.argmin(pairing.position), np.argmax(pairing.position)
+    onwards = (pairing.points[last] - pairing.points[first]) @ along
+    middle = pairing.weights @ pairing.points / pairing.weights.sum()
+    return middle, along if onwards >= 0.0 else -along
+
+
 def condense_tangential(
-    elastic: Elasticity, pairing: Pairing, basis: np.ndarray, translations: np.ndarray
+    elastic: Elasticity, contacts: Contacts, basis: Basis, held: Sequence[HeldMotion]
 ) -> FrictionalContact:
     """Condense elasticity to pressure and shear in one solution. Every rank calls.
 
     Parameters
     ----------
     elastic : Elasticity
-    pairing : Pairing
-    basis : ndarray, shape (n, m)
+    contacts : Contacts
+        Contact points of a plane or axisymmetric model.
+    basis : ndarray or csr_array, shape (n, m)
         Ψ, from `pressure.pressure_basis`.
-    translations : ndarray, shape (k, 2)
-        Unit translations of the holder: along the load direction, and across it if permitted.
+    held : sequence of HeldMotion
+        Motions of the holders.
 
     Raises
     ------
     ComputationError
         If the elastic problem cannot be solved.
     """
-    weighted = scaled(pairing.weights, basis)
-    directions = [pairing.normals, *-tangents(pairing.normals)]
-    contacts = Contacts((pairing,))
+    basis = dense(basis)
+    weighted = scaled(contacts.weights, basis)
+    directions = [contacts.normals, *-tangents(contacts.normals)]
     traces = [vector_trace(elastic.spaces, contacts, direction) for direction in directions]
     sparse = sp.csr_matrix(weighted)
     influence = elastic.solve(sp.hstack([trace @ sparse for trace in traces], format="csr"))
     comm = elastic.bodies.comm
     response = sum_over_ranks(comm, np.array([trace.T @ influence for trace in traces]))
-    rigid = np.array([direction @ np.asarray(translations).T for direction in directions])
-    return frictional_contact(basis, pairing.weights, pairing.gap, response, rigid, influence)
+    along = np.reshape([travel(contacts, each) for each in held], (len(held), -1)).T
+    rigid = closure(contacts, held)
+    return frictional_contact(
+        basis, contacts.weights, contacts.gap, response, rigid, along, held, influence
+    )
+
+
+def closure(contacts: Contacts, held: Sequence[HeldMotion]) -> np.ndarray:
+    """Matrix R at the points, shape (1 + t, n, k), see `FrictionalContact`."""
+    modes = [RigidMode(each.motion, amplitude=0.0, bodies=each.bodies) for each in held]
+    directions = [contacts.normals, *-tangents(contacts.normals)]
+    return np.array([hold(contacts, each, modes).force_response for each in directions])
+
+
+def weak(weighted: np.ndarray, rigid: np.ndarray) -> np.ndarray:
+    """Weak modes, shape (M, k), of a matrix R at the points, shape (1 + t, n, k)."""
+    return np.concatenate([weighted.T @ component for component in rigid])

@@ -9,10 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import scipy
+from scipy.linalg import block_diag
 
+from ..search.contacts import Contacts
 from ..search.pairing import Pairing
 
 _STEPS = 16  # samples of the mean over a segment of the stroke
@@ -55,6 +59,44 @@ def hat_functions(knots: np.ndarray, places: np.ndarray) -> np.ndarray:
     return scipy.interpolate.BSpline.design_matrix(
         np.clip(places, knots[0], knots[-1]), padded, 1
     ).toarray()
+
+
+@dataclass(frozen=True)
+class StrokeGrids:
+    """Grids of the worn profiles of the second bodies of all interfaces, one after the other.
+
+    Attributes
+    ----------
+    each : tuple of StrokeGrid
+    strokes : tuple of float
+        Amplitude at each interface relative to that given.
+    """
+
+    each: tuple[StrokeGrid, ...]
+    strokes: tuple[float, ...]
+
+    @cached_property
+    def areas(self) -> np.ndarray:
+        """Areas of the nodes of all grids [m²]."""
+        return np.concatenate([grid.areas for grid in self.each])
+
+    @cached_property
+    def ranges(self) -> tuple[slice, ...]:
+        """Range of the nodes of each grid."""
+        ends = np.cumsum([0, *(len(grid.areas) for grid in self.each)])
+        return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
+
+    def hats(self, contacts: Contacts, length: float = 0.0) -> np.ndarray:
+        """Values of the hat functions at all contact points, shape (n, n_nodes).
+
+        Parameters
+        ----------
+        contacts : Contacts
+        length : float
+            Length of the segment of the given stroke, see `StrokeGrid.hats` [m].
+        """
+        parts = zip(self.each, contacts.each, self.strokes, strict=True)
+        return block_diag(*(grid.hats(p, abs(stroke) * length) for grid, p, stroke in parts))
 
 
 def track(

@@ -142,16 +142,19 @@ def _depends_on_direction(data: tables.TableColumns, name: str) -> bool:
     return float(np.nanmax(np.abs(along_load - along_normal))) > _SAME * size
 
 
-def draw_friction(folder: Path) -> None:
+def draw_friction(folder: Path, contact: str = "") -> None:
     """Draw ``friction.png``: shear with its Coulomb limits, and slip, at the output times."""
-    found = {label: tables.read(path) for label, path in _at_times(folder, "friction").items()}
-    with column(folder / "friction.png", 2, 2.8) as (upper, lower):
+    files = _at_times(folder, "friction", contact)
+    found = {label: tables.read(path) for label, path in files.items()}
+    summary = read_summary(folder)
+    of_contact = summary.get("contacts", {}).get(contact, summary)
+    with column(folder / picture("friction", contact), 2, 2.8) as (upper, lower):
         for (label, data), color in zip(found.items(), time_colors(len(found), 0.85), strict=True):
             where, position = abscissa(data)
             upper.plot(position, data.drawn("shear"), color=color, label=label)
             slip = np.where(data["pressure"] > 0, data.drawn("slip"), np.nan)
             lower.plot(position, slip, color=color)
-        limit = (read_summary(folder).get("friction") or np.nan) * data.drawn("pressure")
+        limit = (of_contact.get("friction") or np.nan) * data.drawn("pressure")
         upper.plot(position, limit, color="0.5", linestyle=":", label="friction · pressure")
         upper.plot(position, -limit, color="0.5", linestyle=":")
         pressed = position[data["pressure"] > 0]
@@ -164,10 +167,10 @@ def draw_friction(folder: Path) -> None:
         time_legend(upper)
 
 
-def draw_track(folder: Path) -> None:
+def draw_track(folder: Path, contact: str = "") -> None:
     """Draw ``track.png``: wear depths of both bodies, body 1 in the middle of its stroke."""
-    files = _at_times(folder, "track")
-    with column(folder / "track.png", 2, 2.8) as axes:
+    files = _at_times(folder, "track", contact)
+    with column(folder / picture("track", contact), 2, 2.8) as axes:
         for (label, path), color in zip(files.items(), time_colors(len(files)), strict=True):
             moving = tables.read(path.with_name(path.name.replace("track", "interface")))
             both = ((moving, "wear_1"), (tables.read(path), "wear_2"))
@@ -179,7 +182,7 @@ def draw_track(folder: Path) -> None:
         time_legend(axes[0])
 
 
-def _at_times(folder: Path, stem: str) -> dict[str, Path]:
+def _at_times(folder: Path, stem: str, contact: str) -> dict[str, Path]:
     """Files of a table at the output times and at the end, by the labels of their times."""
-    files = {f"{time:.4g} s": path for time, path in states(folder, stem).items()}
-    return files | {"end": folder / f"{stem}.csv"}
+    files = {f"{time:.4g} s": path for time, path in states(folder, stem, contact).items()}
+    return files | {"end": folder / name_at(stem, None, contact)}

@@ -23,6 +23,8 @@ _ALONG_A_LINE: dict[str, Callable[..., None]] = {
     "wear": curves.draw_wear,
     "coating": curves.draw_coating,
     "mode": draw_modes,
+    "friction": curves.draw_friction,
+    "track": curves.draw_track,
 }
 _OVER_A_SURFACE: dict[str, Callable[..., None]] = {
     "interface": maps.draw_interface_maps,
@@ -35,10 +37,8 @@ _OF_THE_INTERFACE = ("wear", "coating")
 _OTHERS: dict[str, Callable[..., None]] = {
     "history": over_time.draw_history,
     "heat": over_time.draw_heat,
-    "friction": curves.draw_friction,
     "loads": over_time.draw_loads,
     "cycles": over_time.draw_cycles,
-    "track": curves.draw_track,
 }
 _TIMEOUT = 180.0  # seconds for the rendering process
 _ANIMATION_TIMEOUT = 1800.0  # seconds for the rendering process of an animation

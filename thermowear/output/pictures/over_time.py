@@ -67,17 +67,34 @@ def draw_heat(folder: Path) -> None:
 
 def draw_loads(folder: Path) -> None:
     """Draw ``loads.png``: tangential force over displacement, and dissipated energy."""
-    data = tables.read(folder / "loads.csv")
-    with column(folder / "loads.png", 2, 2.8, sharex=False) as (upper, lower):
+    data, contacts = tables.read(folder / "loads.csv"), _contacts(folder, "sticking")
+    options = {"margin": (_beside(len(contacts)), 0.0), "sharex": False}
+    with column(folder / "loads.png", 2, 2.8, **options) as (upper, lower):
         plot_columns(upper, data, "tangential_displacement", "tangential_force", color="tab:blue")
-        plot_columns(lower, data, "time", "dissipated", color="tab:red")
+        for name, rows in (contacts or {"": data}).items():
+            style = {"label": name} if contacts else {"color": "tab:red"}
+            plot_columns(lower, rows, "time", "dissipated", **style)
+        if contacts:
+            _legend(lower, len(contacts))
 
 
 def draw_cycles(folder: Path) -> None:
-    """Draw ``cycles.png``: largest wear depth and worn volume of both bodies over the cycles."""
-    data = tables.read(folder / "cycles.csv")
+    """Draw ``cycles.png``: largest wear depth and worn volume of both bodies over the cycles.
+
+    Of several bodies, the worn volume of each at the ends of the computed cycles, over time.
+    """
+    data, contacts = tables.read(folder / "cycles.csv"), _contacts(folder)
     worn = [body for body in (1, 2) if data[f"wear_volume_{body}"].max(initial=0.0) > 0]
     if not worn or len(data["cycle"]) < 2:
+        return
+    if contacts:
+        with column(folder / "cycles.png", 1, 2.7, margin=(_beside(len(contacts)), 0.0)) as (axis,):
+            ends = {
+                name: rows.rows(np.isin(rows["time"], data["time"]))
+                for name, rows in contacts.items()
+            }
+            _plot_by_body(axis, folder, ends, "wear_volume", np.add)
+            from_zero(axis)
         return
     with column(folder / "cycles.png", 2, 2.5) as axes:
         for axis, name in zip(axes, ("max_wear", "wear_volume"), strict=True):
@@ -87,11 +104,11 @@ def draw_cycles(folder: Path) -> None:
         axes[1].set_xlabel("cycles")
 
 
-def _contacts(folder: Path) -> dict[str, tables.TableColumns]:
+def _contacts(folder: Path, stem: str = "contacts") -> dict[str, tables.TableColumns]:
     """Rows of each contact of several bodies by its name; empty for a pair."""
-    if not (folder / "contacts.csv").is_file():
+    if not (folder / f"{stem}.csv").is_file():
         return {}
-    data = tables.read(folder / "contacts.csv")
+    data = tables.read(folder / f"{stem}.csv")
     names = enumerate(contacts_of(folder), start=1)
     return {name: data.rows(data["contact"] == number) for number, name in names}
 

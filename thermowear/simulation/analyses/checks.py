@@ -58,7 +58,7 @@ def require_no_fluid(system: System, analysis: Analysis) -> None:
     CaseError
     """
     wet = [one.table for one in system.model.interfaces if one.fluid_pressure is not None]
-    if wet and analysis.type in ("fretting", "reciprocating"):
+    if wet and analysis.cyclic:
         text = f"is not supported in a {analysis.type} analysis"
         raise CaseError(f"{wet[0]}.fluid_pressure: {text}")
 

@@ -46,7 +46,6 @@ from .transient import TransientHistory
 from .wearing_faces import wearing_faces
 
 _UNPAIRED = 1e-6
-_OF_SEVERAL = "initial", "steady", "transient", "stability"
 
 
 def run(
@@ -123,13 +122,9 @@ def analyse(
     Starts anew, or from the checkpoint of an analysis of the same system.
     """
     choice = system.choice
-    if analysis.type not in _OF_SEVERAL and not system.model.is_pair:
-        raise CaseError(
-            f"a {analysis.type} analysis is for two bodies with one interface; for several bodies "
-            f"there are: {', '.join(_OF_SEVERAL)}"
-        )
     system = wearing_faces(system, analysis, observer)
-    require_support(system)
+    if not isinstance(analysis, FrettingAnalysis):  # where friction carries loads, too
+        require_support(system)
     require_no_fluid(system, analysis)
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:

@@ -8,7 +8,6 @@ from ...model.analyses import Analysis
 from ..runtime.observer import Observer
 from ..system.system import System
 
-_CYCLIC = "fretting", "reciprocating"
 _FOR_EVER = "steady", "stability"
 
 
@@ -23,12 +22,14 @@ def wearing_faces(system: System, analysis: Analysis, observer: Observer) -> Sys
         If the analysis does not support the faces.
     """
     coated = system.model.coated
-    if analysis.type in _CYCLIC:
+    if analysis.cyclic:
         unsupported = ""
-        if jumps(system.pairing):
+        if any(jumps(pairing) for pairing in system.contacts.each):
             unsupported = "contact faces of several materials that wear by different laws"
         elif coated:
             unsupported = "contact faces with layers"
+        elif system.contacts.in_space:
+            unsupported = "bodies in space"
         if unsupported:
             raise CaseError(f"a {analysis.type} analysis does not support {unsupported}")
     if not coated or analysis.type not in _FOR_EVER:

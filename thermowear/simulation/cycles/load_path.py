@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ...contact.friction.stick_slip_state import StickSlipState
-from ...laws.time_course import LoadHistory
+from ...laws.time_course import LoadHistories
 from ...serialise import serialisable
 
 _SAME = 1e-9  # relative to the duration of the history: closer times are equal
@@ -125,12 +125,12 @@ class LoadPath:
 
     Attributes
     ----------
-    history : LoadHistory
+    history : LoadHistories
     output_times : tuple of float
         Output times, each the end of a segment [s].
     """
 
-    history: LoadHistory
+    history: LoadHistories
     output_times: tuple[float, ...]
 
     def first_pass(self) -> Iterator[LoadSegment]:

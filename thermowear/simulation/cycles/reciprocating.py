@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...contact.search.pairing import Pairing
 from ...model.analyses import ReciprocatingAnalysis
-from ...results import HistoryRow, WornTrack
+from ...results import ContactRow, HistoryRow, WornTrack
 from ..interface.body_state import contact_state
 from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
@@ -18,7 +19,7 @@ from ..runtime.observer import Observer
 from ..system.system import System
 from ..time.time_loop import AnySize, Moment, moments
 from .reciprocating_problem import ReciprocatingProblem
-from .stroke import positions
+from .stroke import positions, strokes
 
 
 class ReciprocatingHistory(AnalysisHistory[Moment]):
@@ -27,30 +28,51 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
     def __init__(self, system: System, settings: ReciprocatingAnalysis, observer: Observer):
         super().__init__(system, settings, observer)
         self._timed = settings
-        self._problem = ReciprocatingProblem(system, positions(system, settings))
+        stroke = positions(system, settings)
+        self._problem = ReciprocatingProblem(system, stroke, strokes(system, settings))
 
     def states(self, last: Moment | None) -> Iterator[Moment]:
         sizes = AnySize(self._timed.max_jump / self._timed.frequency)
         return moments(self._problem, self._timed, None, sizes, last)
 
-    def rows_of(self, moment: Moment) -> list[HistoryRow]:
+    def rows_of(self, moment: Moment) -> list[HistoryRow | ContactRow]:
         system, state = self._system, moment.state
-        volumes = self._volumes(state.worn)
+        volumes = self._volumes(state.worn[0])
         mean_speed = float(np.average(system.speed, weights=system.weights))
-        largest, area, motion = self._problem.of_cycle(state.contact)
+        cycle = self._problem.of_cycle(state.contact)
         row = HistoryRow(
             time=moment.time,
             sliding_distance=mean_speed * moment.time,
-            max_pressure=largest,
-            contact_area=area,
-            wear_volume_1=volumes[0],
-            wear_volume_2=volumes[1],
+            max_pressure=float(cycle.largest.max()),
+            contact_area=float(cycle.area.sum()),
+            wear_volume_1=float(volumes[0].sum()),
+            wear_volume_2=float(volumes[1].sum()),
             max_temperature=float("nan"),
-            approach=float(system.approaches @ motion),
+            approach=float(system.approaches @ cycle.motion),
             step=moment.step,
             error=moment.error,
         )
-        return [row]
+        return [row] if system.model.is_pair else [row, *self._contact_rows(moment)]
+
+    def _contact_rows(self, moment: Moment) -> list[ContactRow]:
+        """Rows of the contacts of several bodies: forces and areas are means of the cycle."""
+        cycle, nothing = self._problem.of_cycle(moment.state.contact), float("nan")
+        volumes = self._volumes(moment.state.worn[0])
+        return [
+            ContactRow(
+                time=moment.time,
+                contact=k + 1,
+                normal_force=float(cycle.force[k]),
+                friction_power=float(cycle.power[k]),
+                max_pressure=float(cycle.largest[k]),
+                contact_area=float(cycle.area[k]),
+                wear_volume_1=float(volumes[0, k]),
+                wear_volume_2=float(volumes[1, k]),
+                max_temperature_1=nothing,
+                max_temperature_2=nothing,
+            )
+            for k in range(len(cycle.force))
+        ]
 
     def snapshot(self, moment: Moment) -> Snapshot:
         """Contact and bodies at mid-stroke of body 1, and the worn track; every rank calls."""
@@ -64,23 +86,21 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
         return replace(found, track=self._worn_track(state))
 
     def _worn_track(self, state: InterfaceState) -> WornTrack:
-        """Worn depths and wear rates along the face of body 2."""
-        face = self._system.pairing.sides[1].face
-        rates = self._problem.rates(state.pressure)
-        ends = face.position(np.arange(len(face.nodes)), np.ones(len(face.nodes)))
-        x = np.interp(
-            self._problem.track.position,
-            np.concatenate([[0.0], ends]),
-            np.concatenate([face.nodes[:1, 0, 0], face.nodes[:, -1, 0]]),
+        """Worn depths and wear rates along the faces of the second bodies."""
+        grids, rates = self._problem.track.each, self._problem.rates(state.pressure)
+        pairs = zip(self._system.contacts.each, grids, strict=True)
+        return WornTrack(
+            np.concatenate([_x_along(pairing, grid.position) for pairing, grid in pairs]),
+            self._problem.split(state.worn)[1],
+            self._problem.split(rates)[1],
+            tuple(len(grid.position) for grid in grids),
         )
-        return WornTrack(x, self._problem.split(state.worn)[1], self._problem.split(rates)[1])
 
     def summary(self) -> dict:
         rows, pressure = self.table(HistoryRow), self.last.state.pressure
-        row = rows[-1]
-        volumes = self._volumes(self._problem.rates(pressure))
-        lengths = (area.sum() for area in self._problem.areas)
-        means = [float(volume / area) for volume, area in zip(volumes, lengths, strict=True)]
+        row, rates = rows[-1], self._problem.rates(pressure)[0]
+        lengths, worn = self._volumes(np.ones_like(rates)), self._volumes(rates)
+        means = worn.sum(axis=1) / lengths.sum(axis=1)
         return {
             "steps": len(rows) - 1,
             "time_s": row.time,
@@ -90,16 +110,51 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
             "max_pressure_of_cycle_Pa": row.max_pressure,
             "wear_volume_1_m3": row.wear_volume_1,
             "wear_volume_2_m3": row.wear_volume_2,
-            "mean_wear_rate_1_m_per_s": means[0],
-            "mean_wear_rate_2_m_per_s": means[1],
+            "mean_wear_rate_1_m_per_s": float(means[0]),
+            "mean_wear_rate_2_m_per_s": float(means[1]),
+            **self._of_parts(worn / lengths, self._volumes(self.last.state.worn[0])),
         }
+
+    def _of_parts(self, means: np.ndarray, volumes: np.ndarray) -> dict:
+        """Numbers of each contact and body of several, from arrays (2, n_interfaces)."""
+        model = self._system.model
+        if model.is_pair:
+            return {}
+        contacts, bodies = {}, dict.fromkeys((body.name for body in model.bodies), 0.0)
+        for k, interface in enumerate(model.interfaces):
+            contacts[interface.name] = {
+                f"{name}_{side + 1}_{unit}": float(values[side, k])
+                for name, unit, values in (
+                    ("wear_volume", "m3", volumes),
+                    ("mean_wear_rate", "m_per_s", means),
+                )
+                for side in (0, 1)
+            }
+            for side, body in enumerate(interface.bodies):
+                bodies[model.bodies[body].name] += float(volumes[side, k])
+        worn = {name: {"wear_volume_m3": volume} for name, volume in bodies.items()}
+        return {"contacts": contacts, "bodies": worn}
 
     def _at_points(self, depths: np.ndarray) -> np.ndarray:
         """Depths (or rates) of both bodies at the mid-stroke points, shape (2, n)."""
         system, (on_1, on_2) = self._system, self._problem.split(depths)
-        hats = self._problem.track.hats(system.pairing)
+        hats = self._problem.track.hats(system.contacts)
         return np.array([system.basis @ on_1, hats @ on_2])
 
-    def _volumes(self, depths: np.ndarray) -> list[float]:
-        pairs = zip(self._problem.areas, self._problem.split(depths), strict=True)
-        return [float(area @ depth) for area, depth in pairs]
+    def _volumes(self, depths: np.ndarray) -> np.ndarray:
+        """Integrals of depths (N,) over the faces, shape (2, n_interfaces) [m³]."""
+        problem = self._problem
+        ranges = problem.functions, problem.track.ranges
+        sides = zip(problem.split(depths[None]), problem.areas, ranges, strict=True)
+        return np.array([[v[k] @ area[k] for k in own] for v, area, own in sides])
+
+
+def _x_along(pairing: Pairing, position: np.ndarray) -> np.ndarray:
+    """Coordinates x at positions along the face of the second body [m]."""
+    face = pairing.sides[1].face
+    ends = face.position(np.arange(len(face.nodes)), np.ones(len(face.nodes)))
+    return np.interp(
+        position,
+        np.concatenate([[0.0], ends]),
+        np.concatenate([face.nodes[:1, 0, 0], face.nodes[:, -1, 0]]),
+    )

@@ -21,20 +21,21 @@ amplitude A, ``W1' = κ1 F v / (2 h t)`` and ``W2' = κ2 F v / (2 (h + A) t)``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ...contact.operators.pressure import dense, function_ranges
 from ...contact.solvers.coupled_positions import CoupledSolution, solve_coupled
 from ...contact.solvers.signorini import solve_contact
 from ...contact.wear.implicit_step import Slope, newton_with_wear
-from ...contact.wear.track import StrokeGrid, track
+from ...contact.wear.track import StrokeGrid, StrokeGrids, track
 from ...errors import ComputationError
-from ...laws.interfaces import Law, LocalState
 from ..interface.contact_solver import ContactSolution
 from ..interface.sdirk import InterfaceState, WearProblem
 from ..system.system import System
 from .stroke import Position, condensed, stroke_distribution
+from .stroke_wear import CycleContact, local_wear
 
 _INNER = 0.9  # part of the faces that the distance from the steady state covers, without their ends
 
@@ -42,44 +43,55 @@ _INNER = 0.9  # part of the faces that the distance from the steady state covers
 class ReciprocatingProblem(WearProblem):
     """Contact in all positions of the stroke, coupled by the worn depths.
 
-    Depths form one row of N values: coefficients of body 1, then nodal values of body 2.
-    Pressures have one row per position, shape (J, m).
+    Depths form one row of N values: coefficients of the first bodies, then nodal values of the
+    second ones. Pressures have one row per position, shape (J, m).
 
     Attributes
     ----------
-    track : StrokeGrid
-        Grid of the depths of body 2.
+    track : StrokeGrids
+        Grids of the depths of the second bodies.
     areas : tuple of ndarray, shape (m,) and (n_nodes,)
-        Areas of the depth values of body 1 and of body 2 [m²].
+        Areas of the depth values of the first and of the second bodies [m²].
+    functions : tuple of slice
+        Range of the coefficients of each interface.
     """
 
-    track: StrokeGrid
+    track: StrokeGrids
     areas: tuple[np.ndarray, np.ndarray]
+    functions: tuple[slice, ...]
 
-    def __init__(self, system: System, stroke: list[Position]):
+    def __init__(self, system: System, stroke: list[Position], strokes: np.ndarray):
         self._systems = [position.system for position in stroke]
-        self._holder = system.holder
+        self._holder, contacts = system.holder, system.contacts
+        self.functions = function_ranges(contacts, system.basis)
         speeds = np.array([[position.speed] for position in stroke])
-        self._local = _LocalWear(
-            tuple(system.laws.values()), speeds, system.model.interface.nominal_friction
+        self._local = local_wear(system, self.functions, speeds, strokes)
+        self._lengths = [float(pairing.position.max()) for pairing in contacts.each]
+        self.track = StrokeGrids(
+            tuple(self._grid(system, stroke, k, float(abs(s))) for k, s in enumerate(strokes)),
+            tuple(map(float, strokes)),
         )
-        pairings = [there.pairing for there in self._systems]
-        lengths = [position.length for position in stroke]
-        self._length = float(system.contacts.position[-1])
-        # resolution is limited by the parts of the stroke and by the pressure basis
-        spacing = max(float(np.mean(lengths)), self._length / system.basis.shape[1])
-        self.track = track(pairings, lengths, spacing, system.model.thickness or 1.0)
         self._contacts = condensed(stroke, self.track)
         self._shares = np.array([position.share for position in stroke])
-        weighted = system.contact.weighted
+        weighted = dense(system.contact.weighted)
         self.areas = weighted.sum(axis=0), self.track.areas
-        self._places = (system.contacts.position @ weighted) / self.areas[0], self.track.position
+        places = (contacts.position @ weighted) / self.areas[0]
+        self._places = [places[own] for own in self.functions]
         self._spread = stroke_distribution(self._contacts, self.track, self._shares)[
             list(system.laws)
         ]
 
+    def _grid(self, system: System, stroke: list[Position], index: int, ratio: float) -> StrokeGrid:
+        """Grid of an interface with a stroke relative to that given."""
+        pairings = [there.contacts.each[index] for there in self._systems]
+        lengths = [ratio * position.length for position in stroke]
+        own = self.functions[index]
+        # resolution is limited by the parts of the stroke and by the pressure basis
+        spacing = max(float(np.mean(lengths)), self._lengths[index] / (own.stop - own.start))
+        return track(pairings, lengths, spacing, system.model.thickness or 1.0)
+
     def split(self, depths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coefficients of body 1, shape (m,), and values at the nodes of body 2."""
+        """Coefficients of the first bodies, shape (m,), and values at the nodes of the second."""
         m = self._contacts.gap.shape[1]
         return depths[0, :m], depths[0, m:]
 
@@ -109,14 +121,20 @@ class ReciprocatingProblem(WearProblem):
         """
         return np.einsum("bjnm,bjm->n", self._spread, self._local.value(pressure))[None]
 
-    def of_cycle(self, contact: ContactSolution) -> tuple[float, float, np.ndarray]:
-        """Largest pressure over all positions [Pa], mean contact area [m²] and mean motion."""
-        areas, largest = [], 0.0
+    def of_cycle(self, contact: ContactSolution) -> CycleContact:
+        """Pressures, areas and forces of the cycle."""
+        rows = []
         for system, λ in zip(self._systems, contact.pressure, strict=True):
-            p = system.basis @ λ
-            areas.append(system.weights[p > 0].sum())
-            largest = max(largest, float(p.max()))
-        return largest, float(self._shares @ areas), self._shares @ contact.motion
+            p, w, own = system.basis @ λ, system.weights, system.contacts.ranges
+            terms = (
+                w * (p > 0),
+                system.force_per_pressure * p,
+                w * system.friction * p * system.speed,
+            )
+            rows.append([[p[k].max(), *(term[k].sum() for term in terms)] for k in own])
+        largest, *means = np.moveaxis(np.array(rows, dtype=float), 2, 0)
+        area, force, power = (self._shares @ mean for mean in means)
+        return CycleContact(largest.max(axis=0), area, force, power, self._shares @ contact.motion)
 
     def first_step(self, state: InterfaceState) -> float:
         """Step in which wear is small compared with the elastic deflection of the bodies [s]."""
@@ -130,7 +148,10 @@ class ReciprocatingProblem(WearProblem):
         Largest relative deviation from the mean, excluding the ends of the faces: at the turning
         points the punch corner carries half the load, which no mesh resolves.
         """
-        parts = zip(self.split(self.rates(state.pressure)), self._places, strict=True)
+        on_1, on_2 = self.split(self.rates(state.pressure))
+        parts = [(on_1[own], at) for own, at in zip(self.functions, self._places, strict=True)]
+        grids = zip(self.track.ranges, self.track.each, strict=True)
+        parts += [(on_2[own], grid.position) for own, grid in grids]
         return max(_unevenness(rate, place) for rate, place in parts if rate.any())
 
     def stage(
@@ -162,7 +183,7 @@ class ReciprocatingProblem(WearProblem):
         ------
         ComputationError
         """
-        if worn.max() > self._length:
+        if worn.max() > min(self._lengths):
             raise ComputationError(
                 "wear: the worn depth exceeds the length of the contact; to reach the steady "
                 "state, use more elements or a larger analysis.steady_tolerance"
@@ -180,35 +201,6 @@ class ReciprocatingProblem(WearProblem):
     def _contact(self, solution: CoupledSolution) -> ContactSolution:
         motion = np.array([self._holder.amplitudes(d) for d in solution.motion])
         return ContactSolution(np.maximum(solution.coefficients, 0.0), motion, solution)
-
-
-@dataclass(frozen=True)
-class _LocalWear:
-    """Local wear rates in all positions, see `contact.wear.implicit_step`.
-
-    Attributes
-    ----------
-    laws : tuple of Law
-        Wear laws of the wearing bodies.
-    speeds : ndarray, shape (J, 1) [m/s]
-    friction : float
-    """
-
-    laws: tuple[Law, ...]
-    speeds: np.ndarray
-    friction: float
-
-    def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:
-        """Local rates under coefficients of the pressure (J, m), shape (n_wearing, J, m) [m/s]."""
-        return self._each(pressure, [law.value for law in self.laws])
-
-    def slope(self, pressure: np.ndarray, last: object = None) -> Slope:
-        """Derivatives of the local rates with respect to pressure [m/s/Pa]."""
-        return Slope.diagonal(self._each(pressure, [law.slope for law in self.laws]))
-
-    def _each(self, pressure: np.ndarray, functions) -> np.ndarray:
-        at = LocalState(pressure, self.speeds, mu=self.friction)
-        return np.array([of_law(at) for of_law in functions])
 
 
 def _unevenness(rate: np.ndarray, place: np.ndarray) -> float:

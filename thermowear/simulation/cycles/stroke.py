@@ -1,4 +1,7 @@
-"""Discretised stroke of a reciprocating body 1: positions, mean speeds and contact systems."""
+"""Discretised stroke of reciprocating bodies: positions, mean speeds and contact systems.
+
+The first body of each interface passes over the second one, all with one frequency and phase.
+"""
 
 from __future__ import annotations
 
@@ -7,29 +10,33 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...contact.operators.rigid_motion import hold, sliding
+from ...contact.operators.pressure import Basis, dense, joined_bases, scaled
+from ...contact.operators.rigid_motion import Sliding, hold, joined_sliding, sliding
 from ...contact.operators.traces import gap_trace
-from ...contact.search.contacts import Contacts
+from ...contact.search.pairing import Pairing
 from ...contact.solvers.coupled_positions import CoupledContacts
-from ...contact.wear.track import StrokeGrid
+from ...contact.wear.track import StrokeGrids
 from ...errors import CaseError
 from ...model.analyses import ReciprocatingAnalysis
+from ...model.interface import Interface
 from ..system.contact_points import contact_points
-from ..system.rigid_modes import rigid_modes
+from ..system.rigid_modes import load_direction, rigid_modes
 from ..system.setup_cache import SetupCache
 from ..system.system import System
 
 _UNPAIRED = 1e-6
+_AT_REST = 1e-9
+"""Relative amplitude below which bodies do not slide on each other."""
 
 
 @dataclass(frozen=True)
 class Position:
-    """Position of body 1 with a sliding direction, representing the stroke around it.
+    """Position of the bodies with a sliding direction, representing the stroke around it.
 
     Attributes
     ----------
     offset : float
-        Offset along x from mid-stroke [m].
+        Offset along x from mid-stroke, for the given amplitude [m].
     length : float
         Length of the part of the stroke [m].
     speed : float
@@ -47,13 +54,35 @@ class Position:
     system: System
 
 
+def strokes(system: System, settings: ReciprocatingAnalysis) -> np.ndarray:
+    """Amplitude of the first body over the second one, relative to that given, (n_interfaces,).
+
+    Negative where the second one moves.
+
+    Raises
+    ------
+    CaseError
+        If both bodies of an interface move alike.
+    """
+    given = 4 * settings.amplitude * settings.frequency
+    each = [one.motion.velocity for one in system.model.interfaces]
+    found = np.array([1.0 if velocity is None else velocity / given for velocity in each])
+    for interface, stroke in zip(system.model.interfaces, found, strict=True):
+        if abs(stroke) < _AT_REST:
+            raise CaseError(
+                f"{interface.table}: its bodies do not slide on each other; every contact of a "
+                "reciprocating analysis must slide (glue them: tie = true)"
+            )
+    return found
+
+
 def positions(system: System, settings: ReciprocatingAnalysis) -> list[Position]:
     """Midpoints of stroke parts of equal duration, from one end to the other.
 
     Time shares and mean speeds reproduce the period and the length of the stroke exactly. Without
     friction in the section both sliding directions are equivalent; otherwise both are listed.
     """
-    count = settings.positions
+    count, relative = settings.positions, strokes(system, settings)
     ends = settings.amplitude * np.sin(np.pi * (np.arange(count + 1) / count - 0.5))
     directions = (1, -1) if system.traction is not system.trace else (1,)
     return [
@@ -62,45 +91,63 @@ def positions(system: System, settings: ReciprocatingAnalysis) -> list[Position]
             length=float(end - start),
             speed=float(end - start) * 2 * count * settings.frequency,
             share=1 / (count * len(directions)),
-            system=moved(system, float(start + end) / 2, direction),
+            system=moved(system, float(start + end) / 2 * relative, direction),
         )
         for direction in directions
         for start, end in itertools.pairwise(ends)
     ]
 
 
-def moved(system: System, offset: float, direction: int) -> System:
-    """System with body 1 moved along x and sliding along +x (direction 1) or -x (direction -1).
+def moved(system: System, offsets: np.ndarray, direction: int) -> System:
+    """System with the bodies of each interface moved along x, in sliding.
+
+    Parameters
+    ----------
+    system : System
+    offsets : ndarray, shape (n_interfaces,)
+        Displacement of the first body of each interface over the second one, along +x [m].
+    direction : int
+        1 if they slide in the directions of their velocities, -1 backwards.
 
     Raises
     ------
     CaseError
-        If body 1 leaves the face of body 2.
+        If a first body leaves the face of the second one.
     """
-    model, kinematics = system.model, system.elastic.kinematics
-    face_1, face_2 = (side.face for side in system.pairing.sides)
-    face_1 = replace(face_1, nodes=face_1.nodes + np.array([offset, 0.0]))
+    model, contacts = system.model, system.contacts
     with system.phases("pair"):
-        given = model, model.interface, system.comm, kinematics
-        pairing, basis = contact_points(*given, face_1, face_2)
-    if pairing.unpaired > system.pairing.unpaired + _UNPAIRED:
-        raise CaseError(
-            f"motion.amplitude: {pairing.unpaired:.2%} of {model.interface.faces[0]} leaves "
-            f"{model.interface.faces[1]} where body 1 is moved by {offset:.4g} m; a longer face of "
-            "body 2 is needed (geometry.stroke)"
-        )
-    velocity = direction * kinematics.sliding(pairing.points, model.motion)
-    slides = sliding(velocity, pairing.normals, model.holder.load_direction)
-    friction = model.interface.nominal_friction, model.interface.transverse_friction
-    traction_direction = slides.traction_direction(pairing.normals, *friction)
-    on_1, on_2 = pairing.sides
-    in_place = replace(pairing, sides=(replace(on_1, face=system.pairing.sides[0].face), on_2))
-    still = Contacts((in_place,))
+        each = [
+            _moved(system, interface, pairing, float(offset))
+            for interface, pairing, offset in zip(
+                model.interfaces, contacts.each, offsets, strict=True
+            )
+        ]
+    pairings, bases = zip(*each, strict=True)
+    there = replace(contacts, each=pairings)
+    slides = joined_sliding(
+        [
+            _sliding(system, interface, pairing, direction)
+            for interface, pairing in zip(model.interfaces, pairings, strict=True)
+        ]
+    )
+    friction, transverse = (
+        there.per_point([getattr(one, name) for one in model.interfaces])[:, None]
+        for name in ("nominal_friction", "transverse_friction")
+    )
+    traction_direction = slides.traction_direction(there.normals, friction, transverse)
+    faces = (before.sides[0].face for before in contacts.each)
+    still = replace(
+        there,
+        each=tuple(
+            replace(pairing, sides=(replace(pairing.sides[0], face=face), pairing.sides[1]))
+            for pairing, face in zip(pairings, faces, strict=True)
+        ),
+    )
     return replace(
         system,
-        contacts=Contacts((pairing,)),
-        trace=gap_trace(system.elastic.spaces, Contacts((pairing,))),
-        basis=basis,
+        contacts=there,
+        trace=gap_trace(system.elastic.spaces, there),
+        basis=joined_bases(bases),
         holder=hold(
             still,
             traction_direction,
@@ -113,17 +160,44 @@ def moved(system: System, offset: float, direction: int) -> System:
     )
 
 
-def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
+def _moved(
+    system: System, interface: Interface, pairing: Pairing, offset: float
+) -> tuple[Pairing, Basis]:
+    """Contact points and pressure space of an interface, its first body moved along x [m]."""
+    face_1, face_2 = (side.face for side in pairing.sides)
+    face_1 = replace(face_1, nodes=face_1.nodes + np.array([offset, 0.0]))
+    given = system.model, interface, system.comm, system.elastic.kinematics
+    found, basis = contact_points(*given, face_1, face_2)
+    if found.unpaired > pairing.unpaired + _UNPAIRED:
+        where, body = "motion.amplitude", "body 1"
+        if not system.model.is_pair:
+            where, body = interface.table, system.model.bodies[interface.bodies[0]].name
+        raise CaseError(
+            f"{where}: {found.unpaired:.2%} of {interface.faces[0]} leaves "
+            f"{interface.faces[1]} where {body} is moved by {offset:.4g} m; a longer face of "
+            "body 2 is needed (geometry.stroke)"
+        )
+    return found, basis
+
+
+def _sliding(system: System, interface: Interface, pairing: Pairing, direction: int) -> Sliding:
+    """Sliding of the first body of an interface, in the direction of its velocity or backwards."""
+    velocity = system.elastic.kinematics.sliding(pairing.points, interface.motion)
+    along = load_direction(system.model, interface, pairing)
+    return sliding(direction * velocity, pairing.normals, along)
+
+
+def condensed(stroke: list[Position], grid: StrokeGrids) -> CoupledContacts:
     """Condensed contacts in all positions. Every rank calls."""
     systems = [position.system for position in stroke]
     contacts = [system.contact for system in systems]
     compliances, gaps, gaps_per_depth = [], [], []
     for position, system, contact in zip(stroke, systems, contacts, strict=True):
-        mean = contact.mass
-        passed = contact.weighted.T @ grid.hats(system.pairing, position.length)
-        compliances.append(contact.compliance + system.model.interface.compliance * mean)
+        passed = contact.weighted.T @ grid.hats(system.contacts, position.length)
+        soft = dense(contact.weighted.T @ scaled(system.softness, contact.basis))
+        compliances.append(contact.compliance + soft)
         gaps.append(contact.weak(system.gap - system.holder.imposed))
-        gaps_per_depth.append(np.hstack([mean, passed]))
+        gaps_per_depth.append(np.hstack([contact.mass, passed]))
     return CoupledContacts(
         compliance=np.array(compliances),
         gap=np.array(gaps),
@@ -135,7 +209,7 @@ def condensed(stroke: list[Position], grid: StrokeGrid) -> CoupledContacts:
 
 
 def stroke_distribution(
-    contacts: CoupledContacts, grid: StrokeGrid, shares: np.ndarray
+    contacts: CoupledContacts, grid: StrokeGrids, shares: np.ndarray
 ) -> np.ndarray:
     """Operators from local wear rates to cycle-averaged rates of depths, shape (2, J, N, m)."""
     count, m, total = contacts.gap_per_depth.shape

@@ -52,11 +52,12 @@ def analysis_of(case: AnyCase) -> Analysis:
         return FrettingAnalysis(**found, max_jump=longest)
     if not isinstance(given, tables.Reciprocating):
         return StaticAnalysis(given.type)
-    motion = None if isinstance(case, AssemblyCase) else case.motion
-    if motion is None or motion.amplitude is None or motion.frequency is None:
+    motion = case.reciprocation
+    if motion is None:
         raise CaseError("motion: missing; a reciprocating analysis needs amplitude and frequency")
+    amplitude, frequency = motion
     found = attributes(ReciprocatingAnalysis, given) | kept
-    found |= {"amplitude": motion.amplitude, "frequency": motion.frequency}
+    found |= {"amplitude": amplitude, "frequency": frequency}
     if case.cycles is not None:
-        found["end_time"] = case.cycles / motion.frequency
+        found["end_time"] = case.cycles / frequency
     return ReciprocatingAnalysis(**found, max_jump=longest)

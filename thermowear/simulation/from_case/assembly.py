@@ -9,6 +9,7 @@ import numpy as np
 from ...case.assembly.geometry import AssemblyGeometry
 from ...case.assembly.schema import AssemblyCase
 from ...case.assembly.tables import AssemblyContactTable, AssemblyHolderTable, BodyMotionTable
+from ...case.tables.analyses import Fretting, Reciprocating
 from ...case.tables.schema import MeshTable
 from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh
@@ -119,6 +120,7 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
             for side, (body, face) in enumerate(zip(bodies, faces, strict=True))
             if body in case.wear
         },
+        closes_by_wear=not isinstance(case.analysis, Fretting),
         compliance=table.compliance or 0.0,
         fluid_pressure=table.fluid_pressure,
         initial_shape=table.initial_shape,
@@ -127,9 +129,14 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
 
 
 def _ordered(case: AssemblyCase, table: AssemblyContactTable) -> tuple[str, str]:
-    """Faces of a contact; that of a body that turns about a centre is the second one."""
+    """Faces of a contact; that of a body that turns about a centre is the second one.
+
+    In a reciprocating analysis the first one passes over the second one, whichever moves.
+    """
     assert table.between is not None  # the case has been checked
     first, second = table.between
+    if isinstance(case.analysis, Reciprocating):
+        return first, second
     moves = case.geometry.body_of(first) in case.motions
     alone = moves and case.geometry.body_of(second) not in case.motions
     return (second, first) if alone and case.model != "axisymmetric" else (first, second)
@@ -140,7 +147,7 @@ def _motion(table: BodyMotionTable | None) -> Motion | None:
     if table is None:
         return None
     return Motion(
-        velocity=table.velocity,
+        velocity=table.mean_velocity,
         angular_velocity=table.angular_velocity,
         center=table.center,
         across=table.across,

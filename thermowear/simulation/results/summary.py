@@ -146,7 +146,7 @@ def _of_holder(end: Snapshot, index: int, time: float) -> dict:
         "approach_m": float(motion.at(np.array(holder.pivot)) @ direction),
         "guide_force_N": None,
         "rigid_wear_velocity_m_per_s": None,
-        **_guide_reactions(system, holder, end.contact.pressure, time),
+        **_guide_reactions(system, holder, end.contact.traction(system), time),
         **{key: float(angle) for (name, key), angle in turned if name in holder.free},
     }
 
@@ -254,9 +254,11 @@ def _torque(
 
 
 def _guide_reactions(
-    system: System, holder: Holder, pressure: np.ndarray, time: float
+    system: System, holder: Holder, traction: np.ndarray, time: float
 ) -> dict[str, float]:
     """Guide reactions on the bodies of a holder along its constrained motions [N, N m].
+
+    The traction on the second bodies has the shape (n, gdim) [Pa].
 
     For the whole body: the forces between the halves of a symmetric section cancel.
     """
@@ -266,9 +268,9 @@ def _guide_reactions(
             mode, load = RigidMode(motion, load=0.0, bodies=holder.bodies), 0.0
             for part, history in loads_on(model.holders, holder, motion):
                 load += part if history is None else part * history.factor_at(time)
-            response = hold(system.contacts, system.traction_direction, [mode]).force_response
+            response = hold(system.contacts, traction, [mode]).force_response
             dead = system.dead_resultant(motion)[list(holder.bodies)].sum()
-            reaction = float(system.weights @ (pressure * response[:, 0])) - load - float(dead)
+            reaction = float(system.weights @ response[:, 0]) - load - float(dead)
             cancels = bool(model.symmetry) and name != "z"
             reactions[_GUIDES[name]] = 0.0 if cancels else reaction
     return reactions

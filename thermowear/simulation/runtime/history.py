@@ -19,8 +19,10 @@ from ...results import (
     FrictionHistory,
     HeatRow,
     HistoryRow,
+    HolderRow,
     LoadRow,
     Result,
+    StickRow,
     TrackHistory,
 )
 from ..results.recording import Snapshot, sample
@@ -218,8 +220,14 @@ class AnalysisHistory(ABC, Generic[State]):
         )
         friction = track = None
         if end.friction is not None:
-            loads, cycles = self.table(LoadRow), self.table(CycleRow)
-            friction = FrictionHistory(loads, cycles, end.friction, frictions)
+            friction = FrictionHistory(
+                self.table(LoadRow),
+                self.table(CycleRow),
+                end.friction,
+                frictions,
+                self.table(StickRow),
+                self.table(HolderRow),
+            )
         if end.track is not None:
             track = TrackHistory(end.track, tracks)
         return conclude(

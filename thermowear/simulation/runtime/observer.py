@@ -16,14 +16,16 @@ from ...results import (
     FrictionInterface,
     HeatRow,
     HistoryRow,
+    HolderRow,
     InterfaceFields,
     LoadRow,
+    StickRow,
     WornTrack,
 )
 from ...serialise import serialisable
 from ..system.system import System
 
-AnyRow = HistoryRow | HeatRow | ContactRow | LoadRow | CycleRow
+AnyRow = HistoryRow | HeatRow | ContactRow | LoadRow | CycleRow | StickRow | HolderRow
 
 _ROUNDING = 1e-9  # relative to the contact's length
 

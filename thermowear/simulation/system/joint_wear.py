@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -33,10 +34,14 @@ class JointWear:
     @cached_property
     def laws(self) -> dict[int, Law]:
         """Wear laws of the first (0) and of the second faces; faces without wear are left out."""
+        return self.laws_of(self._counts)
+
+    def laws_of(self, counts: Sequence[int]) -> dict[int, Law]:
+        """Wear laws, likewise, of numbers of points or pressure functions of each interface."""
         return {
             side: joined_laws(
                 [None if wear is None else wear.law_at(p.groups[side]) for wear, p in each],
-                self._counts,
+                counts,
             )
             for side, each in self._sides.items()
         }

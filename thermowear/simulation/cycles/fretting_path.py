@@ -1,0 +1,149 @@
+"""Increments of stick and slip along the load histories, and through their cycles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from ...contact.friction.slip_wear import SlipWear, worn_profiles
+from ...contact.friction.stick_slip import advance, follow
+from ...contact.friction.stick_slip_state import StickSlipState, unloaded
+from ...contact.operators.pressure import function_ranges
+from ...contact.operators.tangential import closure, condense_tangential, weak
+from ...errors import CaseError
+from ...model.analyses import FrettingAnalysis
+from ..system.joint_wear import JointWear
+from ..system.system import System
+from .cycle_jump import adaptive_jumps, fixed_jumps
+from .held_loads import HeldLoads
+from .load_path import Increment, LoadPath, LoadSegment, RestartPoint
+
+_NO_RESISTANCE = 1e-9
+"""Least singular value of the modes, scaled to unit columns, from which contacts resist them."""
+
+
+class FrettingPath:
+    """Increments of the contacts along the load histories and through the cycles.
+
+    Parameters
+    ----------
+    system : System
+    settings : FrettingAnalysis
+
+    Attributes
+    ----------
+    loads : HeldLoads
+        Holders with their motions and loads.
+    cycle_of_history : tuple of float or None
+        Start and end of the repeated part of the load histories [s].
+    profiles : tuple of WornProfiles
+        Worn profiles of the wearing faces.
+    areas : ndarray, shape (m,)
+        Areas of the basis functions of the depths [m²].
+
+    Raises
+    ------
+    CaseError
+        If no holder has a load history, or nothing resists a motion of the holders.
+    """
+
+    def __init__(self, system: System, settings: FrettingAnalysis):
+        if system.slides is not None:
+            raise CaseError(
+                "motions: not supported in a fretting analysis; holders move the bodies"
+            )
+        self.loads, self._settings = HeldLoads(system), settings
+        history, contacts = self.loads.history, system.contacts
+        self._path = LoadPath(history, settings.output_times)
+        self.cycle_of_history = history.cycle
+        with system.phases("condense elasticity"):
+            self._contact = condense_tangential(
+                system.elastic, contacts, system.basis, self.loads.held
+            )
+        self._require_support()
+        weighted = self._contact.weighted
+        self.areas = weighted.sum(axis=0)
+        counts = [own.stop - own.start for own in function_ranges(contacts, weighted)]
+        each = [interface.nominal_friction for interface in system.model.interfaces]
+        self._friction = np.repeat(each, counts)
+        wear = JointWear(system.model, contacts)
+        self._laws = tuple(wear.laws_of(counts).values())
+        self.profiles = tuple(worn_profiles(contacts, weighted, side) for side in system.laws)
+        self._reactions = weak(weighted, closure(contacts, self.loads.reactions))
+
+    def _require_support(self) -> None:
+        """Reject free motions that together move no contact."""
+        free = np.isnan(self.loads.at(self.loads.history.time[0]).motions)
+        modes = self._contact.modes[:, free]
+        sizes = np.linalg.norm(modes, axis=0)
+        scaled = modes / np.where(sizes > 0.0, sizes, 1.0)
+        if free.any() and np.linalg.norm(scaled, -2) <= _NO_RESISTANCE:
+            raise CaseError(
+                "holders: some of their motions together move no contact, so that nothing carries "
+                "their loads; fix one of these holders (free = [])"
+            )
+
+    def reactions(self, state: StickSlipState) -> np.ndarray:
+        """Force along and across the load direction, and moment of each holder, (n_holders, 3)."""
+        found = self._reactions.T @ self._contact.stack(state.pressure, state.shear)
+        return found.reshape(-1, 3)
+
+    def duration(self, increment: Increment) -> float:
+        """Duration of an increment [s]."""
+        segment = increment.segment
+        return (segment.end - segment.start) / self._settings.increments
+
+    def travel(self, state: StickSlipState) -> np.ndarray:
+        """Displacement of the first bodies along the faces, shape (n_interfaces,) [m]."""
+        return self._contact.travel @ state.motion
+
+    def increments(self, last: Increment | None = None) -> Iterator[Increment]:
+        """Increments up to the start of the cycles, then through them.
+
+        Either all increments, or the ones after an increment with a restart point.
+        """
+        restart, passed = RestartPoint(0, unloaded(self._contact, len(self._laws))), -math.inf
+        if last is not None:
+            assert last.restart is not None
+            restart, passed = last.restart, last.segment.end
+        if restart.cycle == 0:
+            left = (segment for segment in self._path.first_pass() if segment.end > passed)
+            for increment in self._along(left, restart.state):
+                restart = RestartPoint(0, increment.state)
+                yield increment
+        if self.cycle_of_history is not None:
+            yield from self._cycles_after(restart)
+
+    def _cycles_after(self, restart: RestartPoint) -> Iterator[Increment]:
+        """Increments of the cycles after a restart point."""
+        settings, count = self._settings, self._settings.cycles
+        if settings.jump == "auto":
+            stops = self._path.cycles_to_stop_at(count)
+            return adaptive_jumps(self, stops, restart, settings.tolerance, settings.max_jump)
+        return fixed_jumps(self, self._path.jumped_cycles(count, settings.jump), restart)
+
+    def cycle(self, state: StickSlipState, number: int, repeats: int) -> Iterator[Increment]:
+        """See `cycle_jump.Cycles`."""
+        return self._along(self._path.cycle(number, repeats), state)
+
+    def equilibrium(self, end: Increment, worn: np.ndarray) -> StickSlipState:
+        """See `cycle_jump.Cycles`."""
+        state, loads = replace(end.state, worn=worn), self.loads.at(end.segment.instant)
+        found = advance(self._contact, self._friction, state, loads, self._wear(0.0))
+        return replace(found, dissipated=state.dissipated)
+
+    def _along(self, segments: Iterator[LoadSegment], state: StickSlipState) -> Iterator[Increment]:
+        count = self._settings.increments
+        for segment in segments:
+            loads, step = self.loads.at(segment.instant), (segment.end - segment.start) / count
+            wear = self._wear(step, segment.repeats)
+            states = follow(self._contact, self._friction, [loads], count, state, wear)
+            for number, state in enumerate(states, start=1):
+                time = segment.end if number == count else segment.start + number * step
+                yield Increment(time, segment, number == count, state)
+
+    def _wear(self, duration: float, repeats: int = 1) -> SlipWear:
+        return SlipWear(self._laws, self.profiles, self._friction, duration, repeats)

@@ -45,8 +45,8 @@ class SurfaceHolder:
         Direction along which it presses, the motion "z"; by default -y in a section, -z in space.
     name : str
         By default that of the first body.
-    reaction : SurfaceHolder or None
-        Holder that bears the force, as a caliper does that of its piston.
+    reaction : SurfaceHolder or str
+        Holder that bears the force, or its name, as a caliper does that of its piston.
     """
 
     surface: BodySurface | Sequence[BodySurface]
@@ -63,7 +63,7 @@ class SurfaceHolder:
     surface_pressures: Mapping[BodySurface, Any] = field(default_factory=dict)
     direction: Sequence[float] | None = None
     name: str = ""
-    reaction: SurfaceHolder | None = None
+    reaction: SurfaceHolder | str = ""
 
     def __post_init__(self):
         for surface in self.surfaces:
@@ -114,6 +114,7 @@ class SurfaceHolder:
         about_x, about_y, about_z = each_quantity(
             units.SignedMoment, self.moments, "Holder.moments"
         )
+        bearing = self.reaction
         loads = {"force": self._largest("force"), "approach": self._largest("approach")}
         loads |= {key: getattr(self, key) for key in ("tangential_force", "closing_moment")}
         on_surfaces: dict[str, Any] = {
@@ -124,7 +125,7 @@ class SurfaceHolder:
             load_direction=direction,
             bodies=tuple(bodies.index(surface.body) for surface in self.surfaces),
             name=self.own_name,
-            reaction="" if self.reaction is None else self.reaction.own_name,
+            reaction=bearing if isinstance(bearing, str) else bearing.own_name,
             pivot=pivot,
             point=pivot if self.point is None else self._position(self.point, "point", dim),
             free=tuple(self.free),

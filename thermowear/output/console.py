@@ -96,10 +96,11 @@ _OF_PARTS = {
         "max_pressure_Pa",
         "shape_range_m",
         "friction_power_W",
+        "dissipated_energy_J",
         "wear_volume_1_m3",
         "wear_volume_2_m3",
     ),
-    "holders": ("approach_m", "rigid_wear_velocity_m_per_s"),
+    "holders": ("approach_m", "tangential_force_N", "rigid_wear_velocity_m_per_s"),
     "bodies": ("contact_heat_W", "wear_volume_m3"),
 }
 """Numbers of the parts of a model of several bodies that are printed."""

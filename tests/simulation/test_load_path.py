@@ -137,7 +137,7 @@ def test_a_cycle_may_begin_between_corners():
 
 
 def test_several_histories_have_one_cycle():
-    """requirement: corners of all; a shorter one stays where it ends; the cycle is closed for all."""
+    """requirement: corners of all; a shorter one stays where it ends; one cycle, closed for all."""
     press = History(time=["0 s", "1.5 s"], force=["1 N", "2 N"])
     pull = History(
         time=["0 s", "1 s", "2 s", "3 s", "4 s"],

@@ -26,7 +26,12 @@ FRETTING = [
     Bad("heat", {"heat": {"cooling": {}}}, "heat", NOT),
     Bad("pressure", {"load.pressure": {"strip_left": "1 MPa"}}, "load.pressure", NOT),
     Bad("fluid", {"contact.fluid_pressure": "1 MPa"}, "contacts.upper.fluid_pressure", NOT),
-    Bad("friction law", {"contact.friction": "0.3 + p/(1e12 Pa)"}, "contacts.upper.friction", "not supported in a fretting"),
+    Bad(
+        "friction law",
+        {"contact.friction": "0.3 + p/(1e12 Pa)"},
+        "contacts.upper.friction",
+        "not supported in a fretting",
+    ),
     Bad("materials", {"wear.strip.materials": REGIONS}, "wear.strip.materials", NOT),
     Bad("layers", {"wear.upper.layers": LAYERS}, "wear.upper.layers", NOT),
     Bad("no history", {GRIP: GONE}, "holders", "needs a history in one of them"),

@@ -305,6 +305,26 @@ def test_a_free_rotation_is_in_balance():
     assert small < 1e-3 * large  # only rolling friction is left
 
 
+def test_a_moment_with_a_history():
+    """requirement: the moment of a cylinder about its centre is that of the friction force alone,
+    M = T R, as pressure on a circle has none.
+    """
+    turned = {
+        "holders.press.free": ["z", "rotation"],
+        "holders.press.pivot": ["0 mm", "11 mm"],
+        "holders.press.history": history(moment=["0 N m", "0.1 N m", "-0.05 N m"]),
+        "holders.grip.history.tangential_displacement": ["0 um"] * 5,
+    }
+    result = rig_of(turned)
+    rows, stuck = result.columns("holders"), result.columns("sticking")
+    moment = rows["moment_Nm"][rows["holder"] == 1]
+    expected = np.interp(rows["time_s"][rows["holder"] == 1], [0, 1, 2], [0, 0.1, -0.05])
+    np.testing.assert_allclose(moment, expected, atol=1e-9)
+    force = stuck["friction_force_N"][stuck["contact"] == 1]
+    np.testing.assert_allclose(np.abs(force) * 6e-3, np.abs(moment), atol=2e-4)
+    assert rows["rotation_rad"][rows["holder"] == 1].max() > 1e-5
+
+
 def rig_of(changes):
     cut = {"wear": {}, "analysis": {"type": "fretting", "increments": 4}, "mesh.elements": 24}
     return solved(RIG, cut | changes)

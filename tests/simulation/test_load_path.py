@@ -7,10 +7,16 @@ from thermowear.laws.time_course import LoadHistories
 from thermowear.simulation.cycles.load_path import LoadPath
 
 
+def of(given: History) -> LoadHistories:
+    return LoadHistories((given.loads,))
+
+
 def history(*pushes, **keys):
     times = [f"{t} s" for t in range(len(pushes))]
-    given = History(time=times, tangential_force=[f"{q} N" for q in pushes], **keys)
-    return LoadHistories((given.loads,))
+    return of(History(time=times, tangential_force=[f"{q} N" for q in pushes], **keys))
+
+
+SHORT = History(time=["0 s", "0.1 s", "0.2 s"], tangential_force=["0 N", "1 N", "0 N"])
 
 
 def way(loads, cycles=1, jump=1, output_times=()):
@@ -48,7 +54,8 @@ def test_a_cycle_begins_where_the_loads_are_those_of_the_end():
     assert history(0, 36, -36, 0).cycle == (0.0, 3.0)
     again = history(36, 0, 36, -36, 36)
     assert again.cycle == (0.0, 4.0)
-    assert replace(again, cycle_start=2.0).cycle == (2.0, 4.0)
+    later = LoadHistories((replace(again.each[0], cycle_start=2.0),))
+    assert later.cycle == (2.0, 4.0)
     assert history(0, 1, 2).cycle is None
     between = history(36, -36, 36, cycle_start="0 s")
     assert between.cycle == (0.0, 2.0)
@@ -98,14 +105,14 @@ def test_no_jump_passes_an_output_time():
     assert stops(LOOP, 10, 0.5, 1.0) == [1, 10]  # before the first cycle
     assert stops(LOOP, 10, 2.0, 9.0) == [1, 4, 10]
     assert stops(LOOP, 10, 4.25, 12.5) == [1, 2, 5, 6, 10]
-    short = History(time=["0 s", "0.1 s", "0.2 s"], tangential_force=["0 N", "1 N", "0 N"]).loads
+    short = of(SHORT)
     for count in range(2, 51):
         assert stops(short, 60, count / 5) == [1, count, 60]
 
 
 def test_ends_of_cycles_are_found_in_spite_of_rounding():
     """requirement: an output at the end of a cycle of tenths of seconds is no leg of its own."""
-    short = History(time=["0 s", "0.1 s", "0.2 s"], tangential_force=["0 N", "1 N", "0 N"]).loads
+    short = of(SHORT)
     for count in range(1, 51):
         found = way(short, cycles=25, output_times=(count / 10,))
         assert len(found) == 1 + 25 * 2
@@ -119,9 +126,29 @@ def test_a_cycle_may_begin_between_corners():
     assert ends(loads, cycles=2) == [
         (0, 0, 1), (1, 0, 1), (2, 1, 1), (3, 1, 1), (4, 2, 1), (5, 2, 1),
     ]  # fmt: skip
-    ramp = History(
-        time=["0 s", "2 s", "3 s", "4 s"],
-        tangential_force=["0 N", "2 N", "0 N", "1 N"],
-        cycle_start="1 s",
-    ).loads
+    ramp = of(
+        History(
+            time=["0 s", "2 s", "3 s", "4 s"],
+            tangential_force=["0 N", "2 N", "0 N", "1 N"],
+            cycle_start="1 s",
+        )
+    )
     assert [leg.end for leg in way(ramp)] == [0, 1, 2, 3, 4]
+
+
+def test_several_histories_have_one_cycle():
+    """requirement: corners of all; a shorter one stays where it ends; one cycle, closed for all."""
+    press = History(time=["0 s", "1.5 s"], force=["1 N", "2 N"])
+    pull = History(
+        time=["0 s", "1 s", "2 s", "3 s", "4 s"],
+        tangential_force=["0 N", "1 N", "0 N", "-1 N", "1 N"],
+    )
+    both = LoadHistories((press.loads, pull.loads))
+    assert both.time == (0.0, 1.0, 1.5, 2.0, 3.0, 4.0)
+    assert LoadHistories((pull.loads,)).cycle == (1.0, 4.0)
+    assert both.cycle is None  # the force of 1 s is not that of the end
+    early = History(time=["0 s", "0.5 s"], force=["1 N", "2 N"])
+    both = LoadHistories((early.loads, pull.loads))
+    assert both.cycle == (1.0, 4.0)
+    assert [leg.end for leg in way(both, cycles=2)] == [0, 0.5, 1, 2, 3, 4, 5, 6, 7]
+    assert both.end(3) == 10.0

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 _CLOSED = 1e-9  # of the largest value: a cycle that ends so near to its begin is closed
-KEYS = ("force", "approach", "tangential_force", "tangential_displacement")
+KEYS = ("force", "approach", "tangential_force", "tangential_displacement", "moment")
 
 
 @dataclass(frozen=True)
@@ -78,6 +78,8 @@ class LoadHistory(TimeCourse):
     cycle_start : float or None
         Start of the cycle that may be repeated up to the end; by default the first of the instants
         with the loads of the last one [s].
+    moment : tuple of float or None
+        About the pivot in a section, anticlockwise [N m].
     """
 
     force: tuple[float, ...] | None = None
@@ -85,6 +87,7 @@ class LoadHistory(TimeCourse):
     tangential_force: tuple[float, ...] | None = None
     tangential_displacement: tuple[float, ...] | None = None
     cycle_start: float | None = None
+    moment: tuple[float, ...] | None = None
 
     @property
     def tangential(self) -> bool:
@@ -93,8 +96,9 @@ class LoadHistory(TimeCourse):
 
     @property
     def only_tangential(self) -> bool:
-        """True without loads along the load direction."""
-        return self.tangential and self.force is None and self.approach is None
+        """True for loads across the load direction alone."""
+        others = self.force, self.approach, self.moment
+        return self.tangential and all(load is None for load in others)
 
     def ends_as(self, time: float) -> bool:
         """True if the loads at an instant equal those of the last one."""

@@ -98,10 +98,11 @@ _OF_PARTS = {
         "friction_power_W",
         "critical_speed_m_per_s",
         "critical_angular_velocity_rad_per_s",
+        "dissipated_energy_J",
         "wear_volume_1_m3",
         "wear_volume_2_m3",
     ),
-    "holders": ("approach_m", "rigid_wear_velocity_m_per_s"),
+    "holders": ("approach_m", "tangential_force_N", "rigid_wear_velocity_m_per_s"),
     "bodies": ("contact_heat_W", "friction_torque_Nm", "wear_volume_m3"),
 }
 """Numbers of the parts of a model of several bodies that are printed."""

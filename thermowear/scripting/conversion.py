@@ -26,6 +26,7 @@ _LOADS = {
     "approach": units.Displacement,
     "tangential_force": units.SignedForce,
     "tangential_displacement": units.Displacement,
+    "moment": units.SignedMoment,
 }
 
 
@@ -147,9 +148,10 @@ def LoadHistory(
     tangential_displacement: Sequence[Any] | None = None,
     repeat: bool = False,
     cycle_start: Any = None,
+    moment: Sequence[Any] | None = None,
 ) -> time_course.LoadHistory:
     """Loads of a holder at instants, see `laws.time_course.LoadHistory`."""
-    loads = force, approach, tangential_force, tangential_displacement
+    loads = force, approach, tangential_force, tangential_displacement, moment
     instants, read = _instants(time, "LoadHistory"), {}
     for (key, kind), values in zip(_LOADS.items(), loads, strict=True):
         if values is not None:

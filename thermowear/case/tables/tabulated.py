@@ -221,6 +221,7 @@ class History(TimeHistory):
         "approach": "um",
         "tangential_force": "N",
         "tangential_displacement": "um",
+        "moment": "N m",
     }
     ALTERNATIVES = ("force", "approach"), ("tangential_force", "tangential_displacement")
 
@@ -228,6 +229,7 @@ class History(TimeHistory):
     approach: tuple[units.Length, ...] | None = None
     tangential_force: tuple[units.SignedForce, ...] | None = None
     tangential_displacement: tuple[units.Displacement, ...] | None = None
+    moment: tuple[units.SignedMoment, ...] | None = None
     cycle_start: units.Instant | None = None
 
     @model_validator(mode="after")

@@ -141,6 +141,8 @@ def varying(case: AnyCase) -> Iterator[Fault]:
 def histories(case: Case) -> Iterator[Fault]:
     """Time histories that have an effect, and end the analysis in time."""
     analysis, history = case.analysis, case.load.history
+    if history is not None and history.moment is not None:
+        yield "load.history.moment", "requires a fretting analysis of several bodies (holders.NAME)"
     if isinstance(analysis, Transient):
         if history is not None:
             yield from _force_history(case, history)

@@ -8,7 +8,10 @@ from ..assembly.schema import AssemblyCase
 from ..assembly.tables import AssemblyHolderTable
 from ..values.section import Fault
 
-_NOT_FORCE = ("approach", "tangential_force", "tangential_displacement", "cycle_start")
+_NOT_FORCE = (
+    *("approach", "tangential_force", "tangential_displacement"),
+    *("moment", "cycle_start"),
+)
 _UNVARIED = ("moments", "tangential_force", "closing_moment")
 
 

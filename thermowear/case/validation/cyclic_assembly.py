@@ -15,6 +15,7 @@ _CONFLICTS = {
     "approach": ("force", "approach"),
     "tangential_force": ("tangential_force",),
     "tangential_displacement": ("tangential_force",),
+    "moment": ("moments",),
 }
 """Constant loads that a load of a history takes the place of."""
 
@@ -69,8 +70,9 @@ def _history(case: AssemblyCase, holder: AssemblyHolderTable) -> Iterator[Fault]
         for other in constant if given else ():
             if getattr(holder, other) is not None:
                 yield other, f"cannot be given together with history.{key}"
-    if "z" not in holder.free and not history.loads.only_tangential:
-        yield "history", 'needs the motion "z" in free for a force or an approach'
+    for key, motion in (("force", "z"), ("approach", "z"), ("moment", "rotation")):
+        if getattr(history, key) is not None and motion not in holder.free:
+            yield f"history.{key}", f"needs the motion {motion!r} in free"
     if not history.loads.tangential:
         return
     bodies = {case.geometry.body_of(surface) for surface in holder.surface}

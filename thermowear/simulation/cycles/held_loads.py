@@ -79,7 +79,10 @@ class DrivenMotion:
             return np.nan, approach
         if holder.closing_moment is not None:
             return holder.closing_moment, np.nan
-        load = applied(replace(holder, force=given.get("force")), self.motion)
+        moment = given.get("moment")
+        turning = holder.moments if moment is None else (0.0, 0.0, moment)
+        held = replace(holder, force=given.get("force"), moments=turning)
+        load = applied(held, self.motion)
         pull = (pulled or 0.0) * across(holder)[1]
         return load + float(pull @ self.motion.at(np.array(holder.point))), np.nan
 

@@ -143,11 +143,6 @@ def _holders(case: AssemblyCase) -> Iterator[Fault]:
         yield "holders", "nothing is pressed: one of them needs a force, a moment or an approach"
 
 
-def _analysis(case: AssemblyCase) -> Iterator[Fault]:
-    if getattr(case.analysis, "frames", 0):
-        yield "analysis.frames", "not supported in a model of several bodies"
-
-
 def _motions(case: AssemblyCase) -> Iterator[Fault]:
     """Motions fit the model, and wear and friction heat need them."""
     for name, motion in case.motions.items():
@@ -245,4 +240,4 @@ def _heat(case: AssemblyCase) -> Iterator[Fault]:
         yield "heat.advection", text
 
 
-_CHECKS = (_contacts, _supports, _analysis, _holders, _motions, _wear, _materials, _heat)
+_CHECKS = (_contacts, _supports, _holders, _motions, _wear, _materials, _heat)

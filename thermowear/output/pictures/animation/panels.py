@@ -79,23 +79,27 @@ class SolidPanel(ScenePanel):
         from .. import solids
 
         self._frames, self._solids = frames, solids
-        self.shape = solids.PIXELS[1] / solids.PIXELS[0]
         self._y = solids.middle(frames.states[-1].interface)
         surfaces = (self._surfaces(state) for state in frames.states)
         self.limits = color_limits(
             *(np.concatenate([surface[frames.field] for surface in parts]) for parts in surfaces)
         )
+        ends = self._rendered(frames.states[0]), self._rendered(frames.states[-1])
+        self._seen = solids.content(*ends)
+        self._blank = np.full_like(ends[0][self._seen], 255)
+        self.shape = self._blank.shape[0] / self._blank.shape[1]
 
     def prepare(self, axis) -> None:
-        name, (width, height) = self._frames.field, self._solids.PIXELS
+        name = self._frames.field
         axis.set_axis_off()
         add_color_bar(axis, name, FIELDS[name].axis, self.limits, self.limits[1])
-        blank = np.full((height, width, 3), 255, dtype=np.uint8)
-        self._image = axis.imshow(blank, interpolation="antialiased")
+        self._image = axis.imshow(self._blank, interpolation="antialiased")
 
     def show(self, state: FrameState) -> None:
-        surfaces = self._surfaces(state)
-        self._image.set_data(self._solids.render(surfaces, self._frames.field, self.limits))
+        self._image.set_data(self._rendered(state)[self._seen])
+
+    def _rendered(self, state: FrameState) -> np.ndarray:
+        return self._solids.render(self._surfaces(state), self._frames.field, self.limits)
 
     def _surfaces(self, state: FrameState) -> list:
         return self._solids.clipped(self._solids.read_grid(state.file), self._y)

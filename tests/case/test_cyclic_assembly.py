@@ -16,6 +16,7 @@ RIG, SUPPORTS, PADS = (
     "disk-brake-two-pads",
 )
 GRIP, HISTORY = "holders.grip.history", "holders.press.history"
+LAW = "not supported in a fretting analysis"
 NOT = "is not supported in a fretting analysis"
 REGIONS = {"left": {"coefficient": "1e-8 1/MPa", "per": "pressure", "where": "x < 0 mm"}}
 LAYERS = {"thickness": ["1 um"], "coefficient": ["1e-9 1/MPa"]}

@@ -7,12 +7,16 @@ import tomllib
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text, starters
 from thermowear.output import tables
-from thermowear.output.files import name_at, table_file
+from thermowear.output.files import FRAMES, name_at, table_file
+from thermowear.output.frames import frame_files, keep_indexed
+from thermowear.output.pictures.animation.panels import SectionPanel, contact_curves
+from thermowear.output.pictures.animation.states import read_frames
 
 from .test_end_to_end import HEADS
 
@@ -207,5 +211,42 @@ def test_commands_for_several_bodies(tmp_path, capsys):
     capsys.readouterr()
     assert main(["shape", str(case), "-o", str(tmp_path / "shape.csv")]) == 1
     assert "there are several contact faces" in capsys.readouterr().err
-    with pytest.raises(tw.CaseError, match=r"^analysis\.frames: not supported"):
-        tw.load(case, tuple(word[6:] for word in TIMES) + ("analysis.frames=3",))
+
+
+def test_frames_by_contact(tmp_path, bodies_not_drawn):
+    """requirement: an interface for each contact and frame; the animation shows all contacts."""
+    (tmp_path / "case.toml").write_text(starter_text(TWO_PADS), encoding="utf-8")
+    deep = ("--set=wear.left_pad.coefficient=4e-3 1/MPa", "--set=analysis.end_time=100 s")
+    assert run(tmp_path, *COARSE, *TIMES, *deep, "--set=analysis.frames=4") == 0
+    folder = tmp_path / "results"
+    frames = frame_files(folder / FRAMES)
+    assert 2 < len(frames) <= 4
+    names = ("left", "right")
+    files = {frame.file("interface", name).name for frame in frames for name in names}
+    files |= {frame.file("fields").name for frame in frames}
+    assert {path.name for path in (folder / FRAMES).iterdir()} == files | {"frames.pvd"}
+    rows = tables.read(folder / "contacts.csv")
+    for number, name in enumerate(names, start=1):
+        largest = rows["max_pressure"][rows["contact"] == number]
+        for frame in frames:
+            pressure = tables.read(frame.file("interface", name))["pressure"]
+            assert pressure.max() == pytest.approx(largest[frame.number], rel=1e-9)
+    sequence = read_frames(folder)
+    pressure, wear = contact_curves(sequence)
+    assert pressure._curves == [("left", "pressure"), ("right", "pressure")]
+    assert wear._curves == [("left", "wear_1"), ("right", "wear_1")]
+    with Image.open(folder / "animation.gif") as film:
+        assert film.n_frames == len(sequence.states)
+    tops = [_top_of(section, 1) for section in SectionPanel(sequence).sections.values()]
+    sunk = json.loads((folder / "summary.json").read_text("utf-8"))["holders"]["piston"]
+    assert tops[0] - tops[-1] == pytest.approx(1e3 * sunk["approach_m"], rel=2e-2)
+    (folder / FRAMES / "interface_left_at_99999.csv").write_text("left behind", encoding="utf-8")
+    keep_indexed(folder / FRAMES)
+    assert {path.name for path in (folder / FRAMES).iterdir()} == files | {"frames.pvd"}
+    assert run(tmp_path, "--overwrite", "--no-pictures", *COARSE) == 0
+    assert not (folder / FRAMES).exists()
+
+
+def _top_of(section, body):
+    """Largest height of a body [mm]."""
+    return section.points[section.triangles[section.body == body], 1].max()

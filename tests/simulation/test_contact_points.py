@@ -35,15 +35,17 @@ def grooved(depth):
     """The system whose block has lost a depth at the abscissae of the contact points."""
     system = built(starter(*CYLINDER), MPI.COMM_SELF)
     kept = MovingFaces(system)
-    face, body = kept.faces[1], movable_body(system, kept.geometry.mesh, 1)
+    block = 0, 1
+    face, body = kept.faces[block], movable_body(system, kept.geometry.mesh, block)
     amounts = face.offsets(depth(system.pairing.points[:, 0]))
     outlined = body.outlined(face.displacement(amounts))
     points = kept.geometry.mesh.points + extended(system.bodies, outlined)
+    depth = np.stack([np.zeros(len(system.weights)), face.depths(amounts)])
+    (contact,) = kept.geometry.contacts
     worn = replace(
         kept.geometry,
         mesh=replace(kept.geometry.mesh, points=points),
-        at=along(system.pairing),
-        depth=np.stack([np.zeros(len(system.weights)), face.depths(amounts)]),
+        contacts=(replace(contact, at=along(system.pairing), depth=depth),),
         updates=1,
     )
     return build(system.model, MPI.COMM_SELF, Phases(), None, SetupCache(), worn)

@@ -37,7 +37,7 @@ _BY_CONTACT = (
     *("mode", "friction", "track"),
 )
 """Pictures by contact in a model of several bodies."""
-_AT = "_at_"
+AT = "_at_"
 """Between the name of a contact and the output time in the names of files."""
 FRAMES = "frames"
 _REPORT_TAG = re.compile(rb'<meta name="generator" content="thermowear"')
@@ -75,7 +75,7 @@ def name_at(stem: str, time: float | None, contact: str = "") -> str:
     """File name of a table at an output time, or at the end."""
     if contact:
         stem = f"{stem}_{contact}"
-        return f"{stem}.csv" if time is None else f"{stem}{_AT}{time:g}.csv"
+        return f"{stem}.csv" if time is None else f"{stem}{AT}{time:g}.csv"
     return f"{stem}.csv" if time is None else f"{stem}_{time:g}.csv"
 
 
@@ -88,7 +88,7 @@ def table_file(name: str) -> TableFile:
     time = _number(rest)
     if time is not None:
         return TableFile(stem, "", time)
-    contact, _, text = rest.rpartition(_AT)
+    contact, _, text = rest.rpartition(AT)
     time = _number(text) if contact else None
     return TableFile(stem, rest) if time is None else TableFile(stem, contact, time)
 

@@ -11,7 +11,8 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from ..results import FIELDS
-from .files import atomic_write, final_name
+from ..results.points import part_of
+from .files import AT, atomic_write, final_name
 from .tables import write_points
 
 _CELLS = {(2, 3): "triangle", (2, 4): "quad", (3, 4): "tetra", (3, 8): "hexahedron"}
@@ -19,7 +20,10 @@ _CELLS = {(2, 3): "triangle", (2, 4): "quad", (3, 4): "tetra", (3, 8): "hexahedr
 _INDEX = "frames.pvd"
 _KINDS = {"fields": ".vtu", "interface": ".csv", "track": ".csv"}
 """Files of a frame with their endings."""
-_FILE = re.compile(r"fields_\d{5,}\.vtu|(interface|track)_\d{5,}\.csv")
+_FILE = re.compile(
+    rf"fields_(\d{{5,}})\.vtu|interface_[\w-]+{AT}(\d{{5,}})\.csv|(?:interface|track)_(\d{{5,}})\.csv"
+)
+"""Names of these files, with the number of the frame in one of the groups."""
 
 
 @dataclass(frozen=True)
@@ -39,9 +43,13 @@ class FrameFiles:
     number: int
     place: Path
 
-    def file(self, kind: str) -> Path:
-        """File of the fields, the interface or, in reciprocating analyses only, the track."""
-        return self.place / f"{kind}_{self.number:05d}{_KINDS[kind]}"
+    def file(self, kind: str, contact: str = "") -> Path:
+        """File of the fields, the track of reciprocating analyses, or the interface.
+
+        The latter by contact in a model of several bodies.
+        """
+        stem = f"{kind}_{contact}{AT}" if contact else f"{kind}_"
+        return self.place / f"{stem}{self.number:05d}{_KINDS[kind]}"
 
 
 def write_frame(place: Path, frame) -> None:
@@ -58,7 +66,8 @@ def write_frame(place: Path, frame) -> None:
     """
     place.mkdir(exist_ok=True)
     new = FrameFiles(frame.time, frame.number, place)
-    write_points(new.file("interface"), frame.interface)
+    for contact, own in (frame.contacts or {"": slice(None)}).items():
+        write_points(new.file("interface", contact), part_of(frame.interface, own))
     if frame.track is not None:
         write_points(new.file("track"), frame.track)
     _write_blocks(new.file("fields"), [_single(block) for block in frame.fields.blocks])
@@ -105,9 +114,11 @@ def remove_frames(place: Path) -> None:
 
 def _remove_others(place: Path, frames: list[FrameFiles]) -> None:
     """Remove files of frames, complete or partial, that belong to none of the given frames."""
-    kept = {frame.file(kind) for frame in frames for kind in _KINDS}
+    kept = {frame.number for frame in frames}
     for path in place.iterdir():
-        if path not in kept and _FILE.fullmatch(final_name(path)):
+        found = _FILE.fullmatch(final_name(path))
+        partial = final_name(path) != path.name
+        if found and (partial or int(next(filter(None, found.groups()))) not in kept):
             path.unlink()
 
 

@@ -66,7 +66,7 @@ class BodyFields:
         Small triangles or quadrilaterals between the points of one cell; in space tetrahedra or
         hexahedra.
     body : ndarray of int, shape (n_cells,)
-        Number of the body, 1 or 2.
+        Number of the body, from 1.
     displacement : ndarray, shape (n_cells, n_points, gdim) [m]
     temperature : ndarray or None, shape (n_cells, n_points) [K]
     von_mises : ndarray, shape (n_cells, n_points) [Pa]
@@ -126,6 +126,8 @@ class Frame:
         Fields of the bodies, on rank 0 only.
     track : WornTrack or None
         Worn track of a reciprocating analysis.
+    contacts : dict of str to slice
+        Ranges of the points of each contact of several bodies, by name; empty for a pair.
     """
 
     number: int
@@ -134,6 +136,7 @@ class Frame:
     interface: InterfaceFields
     fields: AnyFields | None
     track: WornTrack | None = None
+    contacts: dict[str, slice] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

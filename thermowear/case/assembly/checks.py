@@ -168,11 +168,6 @@ def _translations(case: AssemblyCase, holder: AssemblyHolderTable) -> list[tuple
     return free + [axes[name] for name in holder.free if name in axes]
 
 
-def _analysis(case: AssemblyCase) -> Iterator[Fault]:
-    if getattr(case.analysis, "frames", 0):
-        yield "analysis.frames", "not supported in a model of several bodies"
-
-
 def _motions(case: AssemblyCase) -> Iterator[Fault]:
     """Motions fit the model, and wear and friction heat need them."""
     for name, motion in case.motions.items():
@@ -275,7 +270,6 @@ def _heat(case: AssemblyCase) -> Iterator[Fault]:
 
 _CHECKS = (
     _contacts,
-    _analysis,
     _holders,
     _reactions,
     _motions,

@@ -110,9 +110,13 @@ def column(path: Path, count: int, height: float, **options) -> Iterator[np.ndar
 
 def abscissa(data: TableColumns) -> tuple[str, np.ndarray]:
     """Label and values of the horizontal axis: x (or r) on nearly flat faces, else arc length."""
-    flat = np.ptp(data["y"]) <= 0.1 * np.ptp(data["x"])
-    name = "x" if flat else "s"
+    name = "x" if is_flat(data) else "s"
     return data.quantities[name].axis, data.drawn(name)
+
+
+def is_flat(data: TableColumns) -> bool:
+    """True for the points of a nearly flat face."""
+    return bool(np.ptp(data["y"]) <= 0.1 * np.ptp(data["x"]))
 
 
 def plot_along(axis: Axes, data: TableColumns, name: str, line: str = "-", **options) -> None:

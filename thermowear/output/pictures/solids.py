@@ -179,14 +179,19 @@ def draw_views(path: Path, rows: list[list[View]], title: str = "") -> None:
 
 def cropped(picture: np.ndarray) -> np.ndarray:
     """Picture without the white space around its content, except for a margin."""
-    drawn = np.any(picture < _WHITE, axis=2)
+    return picture[content(picture)]
+
+
+def content(*pictures: np.ndarray) -> tuple[slice, slice]:
+    """Rows and columns of the content of equally large pictures, with a margin."""
+    drawn = np.any([np.any(picture < _WHITE, axis=2) for picture in pictures], axis=0)
     if not drawn.any():
-        return picture
+        return np.s_[:, :]
     rows, columns = (np.flatnonzero(drawn.any(axis=axis)) for axis in (1, 0))
-    margin = round(_MARGIN * max(picture.shape))
+    margin = round(_MARGIN * max(pictures[0].shape))
     first, last = max(rows[0] - margin, 0), rows[-1] + margin + 1
     left, right = max(columns[0] - margin, 0), columns[-1] + margin + 1
-    return picture[first:last, left:right]
+    return np.s_[first:last, left:right]
 
 
 def clipped(grid, y: float) -> list:

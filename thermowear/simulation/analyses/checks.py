@@ -9,7 +9,6 @@ from ...model.analyses import (
     Analysis,
     FrettingAnalysis,
     ReciprocatingAnalysis,
-    TransientAnalysis,
 )
 from ...results import InterfaceFields
 from ..geometry_update.outer_loop import GapWear
@@ -136,25 +135,22 @@ def open_contact(system: System, interface: InterfaceFields) -> ComputationError
 def deep_wear(system: System, analysis: Analysis, interface: InterfaceFields) -> str | None:
     """Note on an analysis without mesh motion that leaves the small-wear regime; every rank calls.
 
-    Meshes are not moved in fretting and reciprocating analyses and in models of several bodies. In
-    reciprocating sliding the depths are those at mid-stroke of body 1.
+    Meshes are not moved in fretting and reciprocating analyses. In reciprocating sliding the depths
+    are those at mid-stroke of body 1.
 
     Returns
     -------
     str or None
         None if the wear is small, or declared small by ``wear.update = "never"``.
     """
-    if not isinstance(analysis, FrettingAnalysis | ReciprocatingAnalysis) and (
-        system.model.is_pair or not isinstance(analysis, TransientAnalysis)
-    ):
+    if not isinstance(analysis, FrettingAnalysis | ReciprocatingAnalysis):
         return None
     allowed = analysis.largest_kept
     fraction = GapWear(system).fraction(np.array([interface.wear_1, interface.wear_2]))
     if fraction <= allowed:
         return None
-    kind = f"a {analysis.type} analysis" + (" of several bodies" * (not system.model.is_pair))
     return (
-        f"the wear, which {kind} keeps in the gap, comes to {fraction:.2%} "
+        f"the wear, which a {analysis.type} analysis keeps in the gap, comes to {fraction:.2%} "
         "of the thickness behind the face or of its radius of curvature, or tilts elements by ten "
         f"times that: pressures and shapes are those of small wear, up to {allowed:.2%}"
     )

@@ -182,7 +182,7 @@ class TransientHistory(AnalysisHistory[Moment]):
     def _row(self, moment: Moment, slid: float) -> HistoryRow:
         system, pressure, rows = self.loop.now.system, moment.state.pressure, self.table(HistoryRow)
         depths = moment.state.by_body(system.laws) - system.moved
-        volumes = (system.worn_areas * depths).sum(axis=1) + system.lost
+        volumes = (system.worn_areas * depths).sum(axis=1) + system.lost.sum(axis=0)
         return HistoryRow(
             time=moment.time,
             sliding_distance=slid + (rows[-1].sliding_distance if rows else 0.0),

@@ -8,28 +8,35 @@ import numpy as np
 
 from ...balances import relative, require
 from ...bulk.mesh_motion import extended
-from ...bulk.transfer import transferred
 from ...contact.search.face import Surface
 from ...contact.search.refinement import Rule
-from ...contact.wear.worn_face import WornFace, nodes_of
+from ...contact.wear.worn_face import nodes_of
 from ...errors import CaseError, ComputationError
 from ...geometry.mesh.mixed import AnyMesh, MixedMesh, block_of, exchanged, placed, rows_of
 from ...geometry.mesh.tagged import TaggedMesh
 from ...geometry.moving.moved import nodes_at
 from ...geometry.moving.new_face import NewFace
-from ...laws.motions import combined
 from ...parallel import on_root
 from ...serialise import serialisable
 from ..interface.interface_problem import InterfaceProblem, interface_problem
-from ..interface.sdirk import InterfaceState
+from ..interface.sdirk import InterfaceState, advance_with_error
 from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
-from ..system.worn_geometry import WornGeometry, along
-from .moving_faces import MovingFaces, gap_of_initial_shape, movable_body, worst_cell
-from .remesh import FLOOR, carrying_error, improved, on_new_faces
+from ..system.worn_geometry import WornContact, WornGeometry, along
+from .carrying import carried_rise, carried_wear, change_by_update, with_carried_fluxes
+from .moving_faces import (
+    FaceKey,
+    MovingFaces,
+    gap_of_initial_shape,
+    movable_body,
+    parts_behind,
+    worst_cell,
+)
+from .remesh import FLOOR, Renewed, carrying_error, improved, on_new_faces
 
 serialisable(WornGeometry)
+serialisable(WornContact)
 serialisable(TaggedMesh)
 serialisable(MixedMesh)
 serialisable(NewFace)
@@ -38,9 +45,6 @@ serialisable(Rule)
 _TOLERANCE = 1e-10
 """Relative tolerance of the volume removed by the mesh motion."""
 _ITERATIONS = 20
-_FADED = 0.1
-"""Smallest reference pressure of a change, as a fraction of the largest so far."""
-
 _SLENDER = 0.5
 """Smallest acceptable scaled Jacobian, as a fraction of that of the first mesh if it is slender."""
 
@@ -75,74 +79,69 @@ def updated(
         raise ComputationError(
             f"wear: at {time:.6g} s the worn faces do not fit each other any more ({fault})"
         ) from None
-    rows, corrected = _carried_wear(system, following, state.worn)
-    error = max(corrected, carrying_error(worn, following.pairing)) if renewed else 0.0
+    rows, corrected = carried_wear(system, following, state.worn)
+    error = max(corrected, carrying_error(worn, following.contacts)) if renewed else 0.0
     worn = replace(worn, carrying_error=max(worn.carrying_error, error))
     after, rise = interface_problem(following), None
     if state.stored is not None:
         with system.phases("carry temperatures over"):
-            rise, error = _carried_rise(system, following, state.stored.rise)
+            rise, error = carried_rise(system, following, state.stored.rise)
         largest = max(state.stored.largest, 1e-300)
         worn = replace(worn, heat_error=max(worn.heat_error, error / largest))
     with system.phases("contact"):
         found = after.take_over(problem, state, rows, rise, time)
-    change = _change(following, state, found)
+    found = with_carried_fluxes(following, state, found)
+    change = change_by_update(following, state, found)
     worn = replace(worn, change=max(worn.change, change))
     after.system = replace(following, worn=worn)  # with the errors of this update
     return after, found, change
 
 
-def _change(after: System, state: InterfaceState, found: InterfaceState) -> float:
-    """Largest relative change of pressure and temperature rise by an update.
+def settled(
+    problem: InterfaceProblem,
+    before: InterfaceState,
+    last: InterfaceState,
+    after: InterfaceState,
+    time: float,
+    step: float,
+    tolerance: float,
+) -> InterfaceState:
+    """State after a final update that has not disturbed the pressure. Every rank calls.
 
-    Area means; reference pressures are at least `_FADED` times the largest pressure so far.
+    A disturbance is worn off by repeating the last step on the new meshes; not for transient
+    temperatures, which are known at the end of the step only.
+
+    Parameters
+    ----------
+    problem : InterfaceProblem
+        Problem on the new meshes.
+    before, last, after : InterfaceState
+        States before and after the last step, and after the update.
+    time, step : float
+        Start and size of this step [s].
+    tolerance : float
+        Largest disturbance, relative to the largest pressure.
     """
-    fields = [(state.pressure, found.pressure, _FADED * state.largest)]
-    if state.faces is not None and found.faces is not None:
-        rises = zip(state.faces.rise, found.faces.rise, strict=True)
-        fields += [(old, new, 0.0) for old, new in rises]
-    assert after.worn is not None
-    changes = [0.0]
-    for old, new, least in fields:
-        expected = after.worn.carried(old, after.pairing)
-        scale = float(after.weights @ np.maximum(np.abs(expected), least))
-        if scale > 0.0:
-            changes.append(float(after.weights @ np.abs(new - expected)) / scale)
-    return max(changes)
-
-
-def _carried_wear(before: System, after: System, worn: np.ndarray) -> tuple[np.ndarray, float]:
-    """Volume-preserving transfer of worn depths (n_wearing, n) to the moved mesh [m].
-
-    Also returns the relative volume correction that this needed.
-    """
-    assert after.worn is not None
-    bodies = list(after.laws)
-    in_mesh = after.worn.depth[bodies]
-    # the small rest in the gap matters most: carry it separately from the part in the mesh
-    left = after.worn.carried(worn - in_mesh, after.pairing)
-    rows = after.worn.carried(in_mesh, after.pairing) + left
-    lost = np.zeros(2) if before.worn is None else before.worn.lost
-    error = 0.0
-    for row, body, depth in zip(rows, bodies, worn, strict=True):
-        had = (depth - before.moved[body]) @ before.weights + lost[body]
-        has = (row - after.moved[body]) @ after.weights + after.worn.lost[body]
-        if had > 0.0:
-            row *= 1.0 + (had - has) / (row @ after.weights)
-            error = max(error, abs(had - has) / had)
-    return rows, error
+    worn, contacts = problem.system.worn, problem.system.contacts
+    assert worn is not None
+    expected = worn.carried(last.pressure, contacts)
+    disturbed = float(np.abs(after.pressure - expected).max())
+    if after.stored is not None or disturbed <= tolerance * float(expected.max()):
+        return after
+    grown = worn.carried(last.worn - before.worn, contacts)
+    start = replace(after, worn=after.worn - grown)
+    return advance_with_error(problem, start, time, step).state
 
 
 def _moved(
     system: System, moving: MovingFaces, depth: np.ndarray, state: InterfaceState
 ) -> tuple[WornGeometry, bool]:
     """Geometry with the meshes moved by depths (2, n), and True if a body has been remeshed."""
-    before, faces = moving.geometry, moving.faces
-    offsets = {index: face.offsets(depth[index]) for index, face in faces.items()}
-    mesh, lost = _followed(system, before, faces, offsets, depth @ system.weights)
-    mesh, quality, renewed = on_root(
-        system.comm, lambda: _remeshed(system, before, mesh, list(faces))
-    )
+    before, weights = moving.geometry, system.weights
+    offsets = {key: face.offsets(depth[moving.rows[key]]) for key, face in moving.faces.items()}
+    volumes = {key: depth[own] @ weights[own[1]] for key, own in moving.rows.items()}
+    mesh, lost = _followed(system, before, moving, offsets, volumes)
+    mesh, quality, renewed = on_root(system.comm, lambda: _remeshed(system, before, mesh, moving))
     least = _least_quality(system, before)
     if not quality >= least:  # NaN for degenerate cells
         raise ComputationError(
@@ -150,25 +149,35 @@ def _moved(
             f"{quality:.2g}, at least {least:.2g}); use fewer or more even elements along the "
             'contact (mesh.elements, mesh.grading), or wear.update = "never"'
         )
-    taken = np.zeros_like(depth)
-    for index, face in faces.items():
-        taken[index] = face.depths(offsets[index])
-    motion = combined(system.holder.motions, state.contact.motion)
-    expected = np.array([taken[index] @ system.weights for index in faces])
+    taken, missing = np.zeros_like(depth), 0.0
+    for key, face in moving.faces.items():
+        side, own = moving.rows[key]
+        taken[side, own] = face.depths(offsets[key])
+        missing = max(missing, abs(float(lost[key] - taken[side, own] @ weights[own])))
     total = before.lost + lost
-    missing = float(np.abs(lost[list(faces)] - expected).max())
     error = max(before.volume_error, relative(missing, float(np.abs(total).max())))
     require(geometry_volume_error=error)
+    shape = _missing_shape(system, before, state)
+    pieces = _kept_points(system, state, renewed)
+    contacts = [
+        replace(
+            contact,
+            pieces=None if pieces is None else pieces[index],
+            renewed={},
+            at=along(pairing),
+            depth=(system.moved + taken)[:, own],
+            missing_shape=shape[own],
+            lost=total[index],
+        )
+        for index, (contact, (pairing, own)) in enumerate(
+            zip(before.contacts, system.contacts, strict=True)
+        )
+    ]
     worn = replace(
         before,
         mesh=mesh,
-        pieces=_kept_points(system, state, renewed),
-        renewed={},
-        at=along(system.pairing),
-        depth=system.moved + taken,
-        missing_shape=_missing_shape(system, before, state),
-        holder=(motion.translation, motion.rotation),
-        lost=total,
+        contacts=tuple(contacts),
+        motions=_motions(system, state),
         updates=before.updates + 1,
         quality=min(before.quality, quality),
         volume_error=error,
@@ -176,10 +185,19 @@ def _moved(
     return (on_new_faces(worn, system, renewed), True) if renewed else (worn, False)
 
 
+def _motions(system: System, state: InterfaceState) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+    """Translation and rotation of each body by its holder [m, rad]."""
+    found = [(np.zeros(3), np.zeros(3))] * len(system.model.bodies)
+    motions = system.motions(state.contact.motion)
+    for holder, motion in zip(system.model.holders, motions, strict=True):
+        for body in holder.bodies:
+            found[body] = motion.translation, motion.rotation
+    return tuple(found)
+
+
 def _least_quality(system: System, worn: WornGeometry) -> float:
     """Smallest acceptable scaled Jacobian; less for slender cells in space, never remeshed."""
-    in_space = isinstance(system.pairing.sides[0].face, Surface)
-    return min(FLOOR, _SLENDER * float(worn.best.min())) if in_space else FLOOR
+    return min(FLOOR, _SLENDER * float(worn.best.min())) if system.contacts.in_space else FLOOR
 
 
 def _missing_shape(system: System, before: WornGeometry, state: InterfaceState) -> np.ndarray:
@@ -190,49 +208,54 @@ def _missing_shape(system: System, before: WornGeometry, state: InterfaceState) 
     of the gap where wear has closed it; ahead of each edge of the wear only its deviation from the
     value at the edge counts.
     """
-    missing_shape, pairing = before.carried(before.missing_shape, system.pairing), system.pairing
-    reached = np.any(state.worn > 0.0, axis=0)
-    if before.updates > 0 or isinstance(pairing.sides[0].face, Surface) or not reached.any():
-        return missing_shape
-    in_shape, x = gap_of_initial_shape(pairing), pairing.position
-    return in_shape + np.interp(x, x[reached], (missing_shape - in_shape)[reached])
+    found = []
+    for contact, (pairing, own) in zip(before.contacts, system.contacts, strict=True):
+        missing = contact.carried(contact.missing_shape, pairing)
+        reached = np.any(state.worn[:, own] > 0.0, axis=0)
+        if not contact.is_moved and not system.contacts.in_space and reached.any():
+            in_shape, x = gap_of_initial_shape(pairing), pairing.position
+            missing = in_shape + np.interp(x, x[reached], (missing - in_shape)[reached])
+        found.append(missing)
+    return np.concatenate(found)
 
 
-def _kept_points(system: System, state: InterfaceState, renewed: dict[int, NewFace]) -> Rule | None:
-    """Contact points to keep on the facets of body 1; None in a section.
+def _kept_points(system: System, state: InterfaceState, renewed: Renewed) -> list[Rule] | None:
+    """Contact points to keep on the facets of the first bodies; None in a section.
 
     Pointwise contact keeps them in a section, too: beside the edge of the wear no interpolation of
     the gap is accurate enough for contact at other points.
     """
-    on_surface = isinstance(system.pairing.sides[0].face, Surface)
     pointwise = state.pointwise is not None and not renewed
-    return system.pairing.pieces if on_surface or pointwise else None
+    if system.contacts.in_space or pointwise:
+        return [pairing.pieces for pairing in system.contacts.each]
+    return None
 
 
 def _followed(
     system: System,
     worn: WornGeometry,
-    faces: dict[int, WornFace],
-    offsets: dict[int, np.ndarray],
-    volumes: np.ndarray,
+    moving: MovingFaces,
+    offsets: dict[FaceKey, np.ndarray],
+    volumes: dict[FaceKey, float],
 ) -> tuple[AnyMesh, np.ndarray]:
-    """Moved mesh, and volumes lost (2,). Every rank calls.
+    """Moved mesh, and volumes lost at the faces (n_interfaces, 2). Every rank calls.
 
-    Displacements of the faces are scaled slightly so that the meshes lose the worn volumes: the
-    volume of a curved layer is not exactly its area times its depth.
+    One face after the other. Displacements are scaled slightly so that the meshes lose the worn
+    volumes: the volume of a curved layer is not exactly its area times its depth.
     """
 
     def outlined() -> tuple[np.ndarray, np.ndarray]:
-        lost, moved = np.zeros(2), np.zeros_like(worn.mesh.points)
-        for index, face in faces.items():
-            body, part = movable_body(system, worn.mesh, index), 1.0
-            own = rows_of(worn.mesh, block_of(worn.mesh, *system.model.bodies[index].parts))
+        lost, moved = np.zeros((len(worn.contacts), 2)), np.zeros_like(worn.mesh.points)
+        for key, face in moving.faces.items():
+            mesh, part = placed(worn.mesh, worn.mesh.points + moved), 1.0
+            body = movable_body(system, mesh, key)
+            own = rows_of(mesh, block_of(mesh, *parts_behind(system, key)))
             for _ in range(_ITERATIONS):
-                outline = body.outlined(part * face.displacement(offsets[index]))
-                lost[index] = body.lost(outline, system.elastic.kinematics.area_factor)
-                if abs(lost[index] - volumes[index]) <= _TOLERANCE * abs(volumes[index]):
+                outline = body.outlined(part * face.displacement(offsets[key]))
+                lost[key] = body.lost(outline, system.elastic.kinematics.area_factor)
+                if abs(lost[key] - volumes[key]) <= _TOLERANCE * abs(volumes[key]):
                     break
-                part *= volumes[index] / lost[index]
+                part *= volumes[key] / lost[key]
             moved[own] += outline
         return moved, lost
 
@@ -241,36 +264,27 @@ def _followed(
 
 
 def _remeshed(
-    system: System, worn: WornGeometry, mesh: AnyMesh, bodies: list[int]
-) -> tuple[AnyMesh, float, dict[int, NewFace]]:
+    system: System, worn: WornGeometry, mesh: AnyMesh, moving: MovingFaces
+) -> tuple[AnyMesh, float, Renewed]:
     """Mesh with distorted bodies of a section remeshed, its quality, and the new faces.
 
-    The quality is the smallest scaled Jacobian.
+    The quality is the smallest scaled Jacobian. Bodies with several contact faces are not remeshed,
+    as that would divide the others, too.
     """
-    renewed: dict[int, NewFace] = {}
-    moved = mesh
-    for index in bodies:
-        parts, face = system.model.bodies[index].parts, system.pairing.sides[index].face
-        if isinstance(face, Surface):
+    renewed: Renewed = {}
+    moved, all_faces = mesh, [k for one in system.contacts.bodies for k in one]
+    for key in moving.faces:
+        index, side = key
+        parts, body = parts_behind(system, key), system.contacts.bodies[index][side]
+        face = system.contacts.each[index].sides[side].face
+        if isinstance(face, Surface) or all_faces.count(body) > 1:
             continue
         before, after, block = (block_of(each, *parts) for each in (worn.mesh, moved, mesh))
         places = after.points[nodes_at(before, parts, nodes_of(face))]
         nodes = nodes_at(block, parts, places)  # remeshing of another body renumbers them
-        wanted = worn.sizes[index], system.elastic.kinematics.area_factor, worn.best[index]
+        sizes = worn.contacts[index].sizes[side]
+        wanted = sizes, system.elastic.kinematics.area_factor, worn.best[body]
         improved_block, new = improved(block, parts, nodes, *wanted)
         mesh = exchanged(mesh, block, improved_block)
-        renewed |= {} if new is None else {index: new}
+        renewed |= {} if new is None else {key: new}
     return mesh, worst_cell(mesh), renewed
-
-
-def _carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.ndarray, float]:
-    """Temperature rise of the bodies transferred to the moved mesh [K], and its error."""
-    assert before.thermal is not None
-    assert after.thermal is not None
-    return transferred(
-        rise,
-        before.thermal.conduction.spaces,
-        after.thermal.conduction.spaces,
-        before.bodies,
-        after.bodies,
-    )

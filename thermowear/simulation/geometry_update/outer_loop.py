@@ -18,15 +18,16 @@ from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
 from ...model.model import Zone
 from ..interface.interface_problem import InterfaceProblem, interface_problem
-from ..interface.sdirk import InterfaceState, advance_with_error
+from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState
 from ..runtime.observer import Observer
 from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..time.time_loop import Moment, StepSizes, is_over, moments
-from .geometry_update import updated
-from .moving_faces import STEPPED, MovingFaces, smoothed_wear, steps_grow, thickness_behind
+from .geometry_update import settled, updated
+from .moving_faces import STEPPED, MovingFaces, smoothed_wear, steps_grow
+from .thickness import thicknesses
 from .wider_zone import UpdateCounts, meshed_wider, wider_zone
 
 _CHANGE = 5e-3
@@ -37,7 +38,10 @@ _ROOM = 5.0
 """Upper limit of the allowed fraction, as a multiple of the automatic one."""
 _TILT = 0.1
 """Weight of the element tilt: depth difference of its ends relative to its size."""
-
+_KEPT = (
+    "wear.update: at {:.4g} s the meshes would have to follow the wear, but {}; all wear remains "
+    "in the gap (small wear)"
+)
 Principle = Callable[[System], SteadyState | None]
 """Steady state that a system approaches; None if there is none."""
 
@@ -56,27 +60,28 @@ class GapWear:
     def __init__(self, system: System):
         self._system = system
         self.faces = MovingFaces(system)
-        sides = self.faces.bodies
-        self._each = [(_FaceSize(system, each, sides), own) for each, own in system.contacts]
+        thick = thicknesses(system, self.faces.rows)
+        each = zip(thick, system.contacts, strict=True)
+        self._each = [(_FaceSize(pairing, behind), own) for behind, (pairing, own) in each]
 
     def depth(self, state: InterfaceState) -> np.ndarray:
         """Depths kept in the gap in a state, shape (2, n) [m]."""
         return state.by_body(self._system.laws) - self._system.moved
 
     def fraction(self, depth: np.ndarray) -> float:
-        """Largest ratio of depths (2, n) of both faces to the dimensions of their bodies."""
+        """Largest ratio of depths (2, n) of the faces to the dimensions of their bodies."""
         return max(size.fraction(depth[:, points]) for size, points in self._each)
 
 
 class _FaceSize:
     """Dimensions of the bodies at an interface that limit the wear kept in its gap."""
 
-    def __init__(self, system: System, pairing: Pairing, sides: list[int]):
+    def __init__(self, pairing: Pairing, thickness: dict[int, float]):
         side = pairing.sides[0]
         facets, self._first = np.unique(side.facet, return_index=True)
         self._lengths = side.face.lengths[facets]
         self._curvature = max(float(curvatures(s.face).max()) for s in pairing.sides)
-        self._thickness = {side: thickness_behind(system, pairing, side) for side in sides}
+        self._thickness = thickness
 
     def fraction(self, depth: np.ndarray) -> float:
         ratios = [0.0]
@@ -154,14 +159,18 @@ class OuterLoop:
         self._principle = principle
         self._observer = observer
         self._narrow = ""
+        self._follows = bool(np.isfinite(self.allowed))
+        if self._follows and steps_grow(problem.system):
+            self._keep_all(STEPPED)
         self.now = self._period(problem)
-        if np.isfinite(self.allowed) and problem.system.model.is_pair and not self.now.gap_wear:
-            observer.note(STEPPED)
+
+    def _keep_all(self, why: str) -> None:
+        """Keep all wear in the gap from now on."""
+        self._follows, self._sizes.largest = False, np.inf
+        self._observer.note(why)
 
     def _period(self, problem: InterfaceProblem) -> MeshPeriod:
-        movable = problem.system.model.is_pair and not steps_grow(problem.system)
-        follows = np.isfinite(self.allowed) and movable
-        kept = GapWear(problem.system) if follows else None
+        kept = GapWear(problem.system) if self._follows else None
         return MeshPeriod(problem, self._principle(problem.system), kept)
 
     def restart_data(self) -> tuple:
@@ -210,9 +219,8 @@ class OuterLoop:
 
     def summary(self) -> dict[str, float | int]:
         """Summary entries of the geometry updates; empty without updates."""
-        worn = self.now.system.worn
-        lost = np.zeros(2) if worn is None else worn.lost
-        return self.earlier.counting(worn).summary(self.largest_kept, lost)
+        system = self.now.system
+        return self.earlier.counting(system.worn).summary(self.largest_kept, system)
 
     def _naming_zone_limit(self, passing: Iterator[Moment]) -> Iterator[Moment]:
         """Pass the moments on; add to an error that the contact has outgrown the meshed zone."""
@@ -268,29 +276,21 @@ class OuterLoop:
             self._sizes.largest = step * left / grown
 
     def _end(self, now: MeshPeriod, before: Moment, last: Moment) -> tuple[MeshPeriod, Moment]:
-        """Period and moment after a final update, so that the run ends with worn meshes.
-
-        If the update disturbs the pressure, the last step is repeated to wear the disturbance off;
-        not for transient temperatures, which are known at the end of the step only.
-        """
-        pressure, grown = last.state.pressure, last.state.worn - before.state.worn
-        now, last = self._update(now, last)
-        worn, pairing = now.system.worn, now.system.pairing
-        assert worn is not None
-        grown, expected = worn.carried(grown, pairing), worn.carried(pressure, pairing)
-        disturbed = float(np.abs(last.state.pressure - expected).max())
-        allowed = self._settings.tolerance * float(expected.max())
-        if last.state.stored is not None or disturbed <= allowed:
-            return now, last
-        start = replace(last.state, worn=last.state.worn - grown)
-        again = advance_with_error(now.problem, start, before.time, last.step)
-        return now, replace(last, state=again.state)
+        """Period and moment after a final update, so that the run ends with worn meshes."""
+        now, after = self._update(now, last)
+        states, tolerance = (before.state, last.state, after.state), self._settings.tolerance
+        state = settled(now.problem, *states, before.time, after.step, tolerance)
+        return now, replace(after, state=state)
 
     def _update(self, now: MeshPeriod, last: Moment) -> tuple[MeshPeriod, Moment]:
         """Period and moment after moving the meshes; adapts the allowed fraction."""
-        worn = smoothed_wear(now.problem, last.state, last.time)
-        state, kept = replace(last.state, worn=worn), now.gap_wear
+        kept = now.gap_wear
         assert kept is not None
+        if kept.faces.obstacle is not None:
+            self._keep_all(_KEPT.format(last.time, kept.faces.obstacle))
+            return self._period(now.problem), last
+        worn = smoothed_wear(now.problem, last.state, last.time)
+        state = replace(last.state, worn=worn)
         depth = kept.depth(state)
         problem, state, change = updated(now.problem, kept.faces, depth, state, last.time)
         automatic = self._settings.largest_kept

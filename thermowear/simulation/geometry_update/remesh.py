@@ -1,4 +1,4 @@
-"""Remeshing of the bodies of a section: criterion and transfer to the new faces."""
+"""Remeshing of the bodies of sections: criterion and transfer to the new faces."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 
 from ...bulk.mesh_motion import serial_extension
+from ...contact.search.contacts import Contacts
 from ...contact.search.face import Face
 from ...contact.search.pairing import PairedFace, Pairing
 from ...errors import ComputationError
@@ -17,8 +18,11 @@ from ...geometry.mesh.tagged import TaggedMesh, quality
 from ...geometry.moving.new_face import NewFace
 from ...geometry.moving.remeshed import meshed_anew
 from ..system.system import System
-from ..system.worn_geometry import WornGeometry, along
+from ..system.worn_geometry import WornContact, WornGeometry, along
+from .moving_faces import FaceKey
 
+Renewed = dict[FaceKey, NewFace]
+"""Redivided faces."""
 FLOOR = 0.1
 """Smallest acceptable scaled Jacobian."""
 _SOFT = 0.25
@@ -57,43 +61,60 @@ def improved(
     return (anew, divided) if quality(anew, parts) > worst else (mesh, None)
 
 
-def on_new_faces(worn: WornGeometry, system: System, faces: dict[int, NewFace]) -> WornGeometry:
-    """Transfer worn-face data to the remeshed faces, by index of the body.
+def on_new_faces(worn: WornGeometry, system: System, faces: Renewed) -> WornGeometry:
+    """Transfer worn-face data to the remeshed faces.
 
     Offsets of the new faces from the former ones count as depth lost or gained by the mesh, so that
     the gap is preserved.
     """
-    directions, held, sizes = (list(pair) for pair in (worn.directions, worn.held, worn.sizes))
-    best = worn.best.copy()
-    depth, at, bodies = worn.depth.copy(), worn.at, system.model.bodies
-    for index, new in faces.items():
-        side = system.pairing.sides[index]
-        assert isinstance(side.face, Face)
-        depth[index] += _behind_former(side, new)
-        if index == 0:
-            at = new.at(along(system.pairing))
-        carried = new.carried(worn.directions[index])
-        directions[index] = carried / np.linalg.norm(carried, axis=1, keepdims=True)
-        held[index] = np.zeros(len(carried), dtype=bool)
-        held[index][[0, -1]] = worn.held[index][[0, -1]]
-        sizes[index] = new.sizes
-        parts = bodies[index].parts
-        best[index] = quality(block_of(worn.mesh, *parts), parts)
+    contacts, best = list(worn.contacts), worn.best.copy()
+    for (index, side), new in faces.items():
+        pairing, interface = system.contacts.each[index], system.model.interfaces[index]
+        contacts[index] = _on_new_face(contacts[index], pairing, side, new)
+        parts = system.model.bodies[interface.bodies[side]].parts
+        best[interface.bodies[side]] = quality(block_of(worn.mesh, *parts), parts)
     return replace(
         worn,
-        directions=tuple(directions),
-        held=tuple(held),
-        sizes=tuple(sizes),
+        contacts=tuple(contacts),
         best=best,
-        at=at,
-        depth=depth,
-        renewed=faces,
         meshed_anew=worn.meshed_anew + len(faces),
     )
 
 
-def carrying_error(worn: WornGeometry, pairing: Pairing) -> float:
-    """Round-trip error of depths carried over to a pairing, relative to the largest."""
+def _on_new_face(contact: WornContact, pairing: Pairing, index: int, new: NewFace) -> WornContact:
+    """Data of an interface one of whose faces, by side, has been remeshed."""
+    side, at, depth = pairing.sides[index], contact.at, contact.depth.copy()
+    assert isinstance(side.face, Face)
+    depth[index] += _behind_former(side, new)
+    if index == 0:
+        at = new.at(along(pairing))
+    carried = new.carried(contact.directions[index])
+    held = np.zeros(len(carried), dtype=bool)
+    held[[0, -1]] = contact.held[index][[0, -1]]
+    directions = carried / np.linalg.norm(carried, axis=1, keepdims=True)
+    return replace(
+        contact,
+        directions=_exchanged(contact.directions, index, directions),
+        held=_exchanged(contact.held, index, held),
+        sizes=_exchanged(contact.sizes, index, new.sizes),
+        at=at,
+        depth=depth,
+        renewed=contact.renewed | {index: new},
+    )
+
+
+def _exchanged(pair: tuple[np.ndarray, ...], index: int, new: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Values of both sides with new ones of one of them."""
+    return tuple(new if side == index else values for side, values in enumerate(pair))
+
+
+def carrying_error(worn: WornGeometry, contacts: Contacts) -> float:
+    """Round-trip error of depths carried over to new pairings, relative to the largest."""
+    each = zip(worn.contacts, contacts.each, strict=True)
+    return max(_carrying_error(one, pairing) for one, pairing in each if one.renewed)
+
+
+def _carrying_error(worn: WornContact, pairing: Pairing) -> float:
     there = worn.carried(worn.depth, pairing)
     back = scipy.interpolate.Akima1DInterpolator(along(pairing), there, axis=-1, method="makima")
     after = np.clip(worn.at, *along(pairing)[[0, -1]])

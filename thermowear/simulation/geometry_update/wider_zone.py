@@ -146,8 +146,8 @@ class UpdateCounts:
         pairs = {name: (value, getattr(worn, name)) for name, value in vars(self).items()}
         return UpdateCounts(**{name: _COMBINED.get(name, max)(*v) for name, v in pairs.items()})
 
-    def summary(self, largest_kept: float, lost: np.ndarray) -> dict[str, float | int]:
-        """Summary entries with the largest wear kept in the gap and the volumes lost (2,) [m³].
+    def summary(self, largest_kept: float, system: System) -> dict[str, Any]:
+        """Summary entries with the largest wear kept in the gap and the volumes lost.
 
         Empty without updates.
         """
@@ -157,11 +157,22 @@ class UpdateCounts:
             "geometry_updates": self.updates,
             "geometry_largest_kept": largest_kept,
             "geometry_smallest_scaled_jacobian": self.quality,
-            "geometry_volume_1_m3": float(lost[0]),
-            "geometry_volume_2_m3": float(lost[1]),
+            **_lost_volumes(system),
             "geometry_volume_error": self.volume_error,
             "geometry_change": self.change,
             "geometry_temperature_error": self.heat_error,
             "geometry_meshed_anew": self.meshed_anew,
             "geometry_remeshing_error": self.carrying_error,
         }
+
+
+def _lost_volumes(system: System) -> dict[str, Any]:
+    """Volumes that the meshes have lost, of several bodies in a table by their names [m³]."""
+    model, lost = system.model, system.lost
+    if model.is_pair:
+        return {f"geometry_volume_{side}_m3": float(v) for side, v in enumerate(lost[0], 1)}
+    found = {body.name: {"geometry_volume_m3": 0.0} for body in model.bodies}
+    for interface, volumes in zip(model.interfaces, lost, strict=True):
+        for body, volume in zip(interface.bodies, volumes, strict=True):
+            found[model.bodies[body].name]["geometry_volume_m3"] += float(volume)
+    return {"bodies": found}

@@ -102,7 +102,7 @@ class InterfaceProblem(WearProblem):
             [s]
         """
         edge, geometry = state.pointwise, self.system.worn
-        if edge is not None and (geometry is None or geometry.pieces is None):
+        if edge is not None and (geometry is None or not geometry.keeps_points):
             edge = self._edge.points(worn)  # the contact points have changed
         if state.stored is None:
             found = self._in_steady_heat(worn, time, edge)

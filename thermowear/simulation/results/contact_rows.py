@@ -37,8 +37,9 @@ def contact_rows(
     forces = force_per_pressure * p
     powers = system.weights * conditions.heating * p
     areas = system.weights * (p > 0)
-    volumes = system.worn_areas * (state.by_body(system.laws) - system.moved)
+    kept = system.worn_areas * (state.by_body(system.laws) - system.moved)
     faces = nothing if state.faces is None else np.array(state.faces.rise) + ambient
+    each = zip(system.contacts.ranges, system.lost, strict=True)
     return [
         ContactRow(
             time=time,
@@ -47,10 +48,10 @@ def contact_rows(
             friction_power=float(powers[own].sum()),
             max_pressure=float(p[own].max()),
             contact_area=float(areas[own].sum()),
-            wear_volume_1=float(volumes[0, own].sum()),
-            wear_volume_2=float(volumes[1, own].sum()),
+            wear_volume_1=float(kept[0, own].sum() + lost[0]),
+            wear_volume_2=float(kept[1, own].sum() + lost[1]),
             max_temperature_1=float(faces[0, own].max()),
             max_temperature_2=float(faces[1, own].max()),
         )
-        for number, own in enumerate(system.ranges_by_name.values(), start=1)
+        for number, (own, lost) in enumerate(each, start=1)
     ]

@@ -216,8 +216,8 @@ def along_load(system: System) -> np.ndarray:
 def sample(snapshot: Snapshot) -> AnyFields | None:
     """Sample displacement (holders' motion included), temperature and von Mises stress.
 
-    Body 1 is drawn at its position of the last mesh motion to the worn face: a body shortened by
-    wear stays in contact with the other one.
+    Bodies are drawn at their positions of the last mesh motion to the worn faces: a body shortened
+    by wear stays in contact with the others.
 
     Every rank calls; ranks other than 0 return None. Cells are in the order of the mesh file.
     """
@@ -263,10 +263,12 @@ def _fields(
     rise: np.ndarray | None = None,
 ) -> BodyFields:
     """Fields in the cells of one type, from samples of shape (n_cells, n_points, components)."""
-    if system.worn is not None:
-        placed = RigidMotion(*system.worn.holder, np.zeros(3)).at(points[body == 1])
-        points[body == 1] += placed
-        displacement[body == 1] -= placed
+    placements = () if system.worn is None else system.worn.placements
+    for number, placement in enumerate(placements, start=1):
+        own = body == number
+        placed = placement.at(points[own])
+        points[own] += placed
+        displacement[own] -= placed
     absolute = None
     if rise is not None and system.thermal is not None:
         absolute = rise[..., 0] + system.thermal.ambient

@@ -106,7 +106,8 @@ def _of_interface(end: Snapshot, index: int) -> dict:
     rates = (fields.wear_rate_1 + fields.wear_rate_2)[own]
     worn = p > 0
     depths = np.array([fields.wear_1, fields.wear_2])
-    volumes = (system.worn_areas * (depths - system.moved))[:, own].sum(axis=1) + system.lost
+    in_gap = (system.worn_areas * (depths - system.moved))[:, own].sum(axis=1)
+    volumes = in_gap + system.lost[index]
     constant, fluid = isinstance(interface.friction, Constant), fluid_forces(system)
     return {
         "friction": interface.nominal_friction if constant else None,

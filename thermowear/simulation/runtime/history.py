@@ -257,8 +257,8 @@ class AnalysisHistory(ABC, Generic[State]):
             return
         with self._system.phases("frames"):
             now = self.snapshot(state)
-            frame = Frame(number, every, state.time, now.interface, sample(now), now.track)
-            self._observer.frame(frame)
+            shown = now.interface, sample(now), now.track, now.system.ranges_by_name
+            self._observer.frame(Frame(number, every, state.time, *shown))
 
 
 def spacing(number: int, most: int) -> int:

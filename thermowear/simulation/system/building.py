@@ -171,8 +171,8 @@ def _paired(
     """Contact points of all interfaces, and their pressure spaces."""
     gathered = [_gathered(model, one, bodies) for one in model.interfaces]
     require_regions(model, gathered)
-    pairs = zip(model.interfaces, gathered, strict=True)
-    each = [_paired_faces(model, *pair, comm, kinematics, bodies, worn) for pair in pairs]
+    given = model, comm, kinematics, bodies, worn
+    each = [_paired_faces(*given, index, faces) for index, faces in enumerate(gathered)]
     pairings, bases = zip(*each, strict=True)
     contacts = Contacts(pairings, tuple(interface.bodies for interface in model.interfaces))
     return contacts, joined_bases(bases)
@@ -186,20 +186,21 @@ def _gathered(model: Model, interface: Interface, bodies: Bodies) -> tuple:
 
 def _paired_faces(
     model: Model,
-    interface: Interface,
-    gathered: tuple,
     comm,
     kinematics: Kinematics,
     bodies: Bodies,
     worn: WornGeometry | None,
+    index: int,
+    gathered: tuple,
 ) -> tuple[Pairing, Basis]:
+    interface = model.interfaces[index]
     divided = divided_faces(model, interface, gathered)
     require_laws(model, interface, bodies, divided)
-    wears = bool(interface.wearing_in_place)
-    faces = [replace(face, wears=wears) for face in divided]
-    if worn is None:
+    faces = [replace(face, wears=bool(interface.wearing_in_place)) for face in divided]
+    if worn is None or not worn.contacts[index].is_moved:
         return contact_points(model, interface, comm, kinematics, *faces)
-    return worn_contact_points(model, interface, kinematics, worn, *faces)
+    moved = worn.contacts[index], worn.relative_motion(interface.bodies)
+    return worn_contact_points(model, interface, kinematics, *moved, *faces)
 
 
 def _glued(model: Model, comm, kinematics: Kinematics, bodies: Bodies) -> list[Pairing]:

@@ -21,7 +21,7 @@ from ...model.body import Facing
 from ...model.interface import Interface
 from ...model.model import Model
 from .initial_shape import initial_gap
-from .worn_geometry import WornGeometry
+from .worn_geometry import WornContact
 
 _SLIVER = 1e-3
 """Snapping distance to facet ends, relative to the facet: matching facets drift apart by wear."""
@@ -78,11 +78,12 @@ def worn_contact_points(
     model: Model,
     interface: Interface,
     kinematics: Kinematics,
-    worn: WornGeometry,
+    worn: WornContact,
+    motion: RigidMotion,
     face_1: Face | Surface,
     face_2: Face | Surface,
 ) -> tuple[Pairing, Basis]:
-    """Contact points of worn faces at the present position of body 1, with the unworn gap.
+    """Contact points of worn faces after a motion of body 1 over body 2, with the unworn gap.
 
     The gap is measured between points opposite along the directions of the mesh motion: a moved
     mesh opens it by exactly the depth that it loses, even where the faces are inclined to each
@@ -90,8 +91,6 @@ def worn_contact_points(
     depth not removed. Closest-point or normal projection would change the gap there.
     """
     face_1, face_2 = _by_walls(worn, (face_1, face_2))
-    moved, turned = worn.holder
-    motion = RigidMotion(moved, turned, np.zeros(3))
     closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
     if worn.pieces is None:
         max_overhang = _max_overhang(worn, face_1)
@@ -113,7 +112,7 @@ def worn_contact_points(
     return replace(worn_pairing, gap=between + apart + unworn), basis
 
 
-def _by_walls(worn: WornGeometry, faces: tuple) -> tuple:
+def _by_walls(worn: WornContact, faces: tuple) -> tuple:
     """Assign the common face to the other body if the mesh of only one has groove walls.
 
     Walls are the unworn remainder of a mesh beside its wear and not in contact.
@@ -125,7 +124,7 @@ def _by_walls(worn: WornGeometry, faces: tuple) -> tuple:
     return tuple(replace(face, softness=1.0 if wall else _LEAST) for face, wall in pairs)
 
 
-def _max_overhang(worn: WornGeometry, face_1: Face | Surface) -> float:
+def _max_overhang(worn: WornContact, face_1: Face | Surface) -> float:
     """Largest overhang of a face past the end of the other one, relative to its size.
 
     Rounding only if the unworn face overhangs already. Otherwise the holder's motion has moved it

@@ -208,15 +208,15 @@ class System:
 
     @cached_property
     def lost(self) -> np.ndarray:
-        """Volumes already removed from the meshes of both bodies of a pair, shape (2,) [m³]."""
-        return np.zeros(2) if self.worn is None else self.worn.lost
+        """Volumes removed from the meshes behind both faces, shape (n_interfaces, 2) [m³]."""
+        return np.zeros((len(self.contacts.each), 2)) if self.worn is None else self.worn.lost
 
     @cached_property
     def moved(self) -> np.ndarray:
         """Wear depths already removed from the meshes at the points, shape (2, n) [m]."""
         if self.worn is None:
             return np.zeros((2, len(self.weights)))
-        return self.worn.moved(self.pairing)
+        return self.worn.moved(self.contacts)
 
     @cached_property
     def worn_areas(self) -> np.ndarray:

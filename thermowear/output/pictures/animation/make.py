@@ -13,7 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ....errors import CaseError
-from ...files import FRAMES
+from ...files import FRAMES, contacts_of, name_at
 from ...frames import frame_files
 from ..maps import is_surface
 from ..panels import STYLE, color_map
@@ -47,10 +47,9 @@ def check_animation(folder: Path, path: Path) -> None:
         raise CaseError(f"-o {path}: ends in {path.suffix or 'nothing'}; must end in .gif or .mp4")
     if not path.parent.is_dir():
         raise CaseError(f"-o {path}: there is no folder {path.parent}")
-    if not (folder / "interface.csv").is_file():
-        raise CaseError(
-            f"{folder}: contains no interface.csv; not a results folder of a finished run"
-        )
+    needed = name_at("interface", None, contacts_of(folder)[0])
+    if not (folder / needed).is_file():
+        raise CaseError(f"{folder}: contains no {needed}; not a results folder of a finished run")
     if not has_frames(folder):
         raise CaseError(f"{folder}: has no frames; run the case with --set analysis.frames=60")
     if path.suffix == MP4:

@@ -6,7 +6,9 @@ Axes and colour ranges are those of all frames.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.lines import Line2D
 
@@ -15,12 +17,12 @@ from ..bodies import read_section
 from ..maps import draw_colors, triangulated
 from ..panels import (
     BODIES,
-    abscissa,
     add_color_bar,
     clipped_top,
     color_limits,
     contact_window,
     inside,
+    is_flat,
     label_coordinates,
     proportion,
     whole,
@@ -29,6 +31,8 @@ from .states import FrameSequence, FrameState, ScenePanel
 
 _SCALE = 0.05  # width of the colour bar relative to the panel
 _AXIS_END = 1.06  # end of an axis relative to the largest value
+_MOST = 8  # curves in a legend
+_LINES = ("-", "--", "-.", ":")
 _FAINT = {"color": "0.6", "linewidth": 1.2}
 _STYLES = {
     "wear_1": {"color": BODIES[0], "linestyle": "-"},
@@ -45,7 +49,7 @@ class SectionPanel(ScenePanel):
         self.sections = {s.time: read_section(s.file).displaced() for s in frames.states}
         sections = self.sections.values()
         points = np.concatenate([section.points for section in sections])
-        interfaces = [state.interface for state in frames.states]
+        interfaces = [table for state in frames.states for table in state.interfaces.values()]
         self.window = contact_window(interfaces, points) or whole(points)
         self.shape = proportion(self.window)
         seen = [s.fields[frames.field][inside(s.points, self.window)] for s in sections]
@@ -75,42 +79,47 @@ class SolidPanel(ScenePanel):
         from .. import solids
 
         self._frames, self._solids = frames, solids
-        self.shape = solids.PIXELS[1] / solids.PIXELS[0]
         self._y = solids.middle(frames.states[-1].interface)
         surfaces = (self._surfaces(state) for state in frames.states)
         self.limits = color_limits(
             *(np.concatenate([surface[frames.field] for surface in parts]) for parts in surfaces)
         )
+        ends = self._rendered(frames.states[0]), self._rendered(frames.states[-1])
+        self._seen = solids.content(*ends)
+        self._blank = np.full_like(ends[0][self._seen], 255)
+        self.shape = self._blank.shape[0] / self._blank.shape[1]
 
     def prepare(self, axis) -> None:
-        name, (width, height) = self._frames.field, self._solids.PIXELS
+        name = self._frames.field
         axis.set_axis_off()
         add_color_bar(axis, name, FIELDS[name].axis, self.limits, self.limits[1])
-        blank = np.full((height, width, 3), 255, dtype=np.uint8)
-        self._image = axis.imshow(blank, interpolation="antialiased")
+        self._image = axis.imshow(self._blank, interpolation="antialiased")
 
     def show(self, state: FrameState) -> None:
-        surfaces = self._surfaces(state)
-        self._image.set_data(self._solids.render(surfaces, self._frames.field, self.limits))
+        self._image.set_data(self._rendered(state)[self._seen])
+
+    def _rendered(self, state: FrameState) -> np.ndarray:
+        return self._solids.render(self._surfaces(state), self._frames.field, self.limits)
 
     def _surfaces(self, state: FrameState) -> list:
         return self._solids.clipped(self._solids.read_grid(state.file), self._y)
 
 
 class FaceMap(ScenePanel):
-    """Panel with a map of a quantity over the contact face."""
+    """Panel with a map of a quantity over a contact face."""
 
-    def __init__(self, frames: FrameSequence, name: str):
-        self._frames, self._name = frames, name
-        highest = max(float(state.interface.drawn(name).max()) for state in frames.states)
+    def __init__(self, frames: FrameSequence, contact: str, name: str):
+        self._end, self._contact, self._name = frames.states[-1].interfaces[contact], contact, name
+        highest = max(float(s.interfaces[contact].drawn(name).max()) for s in frames.states)
         self._limits = (0.0, highest)
         self._drawn: list = []
 
     def prepare(self, axis) -> None:
-        self._axis, data = axis, self._frames.states[-1].interface
+        self._axis, data = axis, self._end
         label_coordinates(axis, data)
         window = whole(np.stack([data.drawn("x"), data.drawn("y")], axis=1))
         axis.set(xlim=window[:2], ylim=window[2:])
+        axis.set_title(self._contact, fontsize="medium")
         axis.grid(visible=False)
         label, limits = data.quantities[self._name].wrapped, self._limits
         add_color_bar(axis, self._name, label, limits, limits[1], shrink=1.0)
@@ -118,54 +127,86 @@ class FaceMap(ScenePanel):
     def show(self, state: FrameState) -> None:
         while self._drawn:
             self._drawn.pop().remove()
-        x, y, values = map(state.interface.drawn, ("x", "y", self._name))
+        table = state.interfaces[self._contact]
+        x, y, values = map(table.drawn, ("x", "y", self._name))
         ends = dict(zip(("vmin", "vmax"), self._limits, strict=True))
         self._drawn = [draw_colors(self._axis, triangulated(x, y), values, self._name, **ends)]
 
 
 def face_maps(frames: FrameSequence) -> list[FaceMap]:
-    """Maps of the pressure, and of the wear depth of the body with the deeper wear."""
-    depths = {name: frames.states[-1].interface[name].max() for name in ("wear_1", "wear_2")}
-    deepest = max(depths, key=lambda name: depths[name])
-    return [FaceMap(frames, name) for name in ("pressure", *([deepest] * (depths[deepest] > 0)))]
+    """Maps of the pressure and of the largest wear depth, of the contact with the deepest wear.
+
+    Without wear, that of the largest pressure.
+    """
+    ends = frames.states[-1].interfaces
+    depths = {(c, name): ends[c][name].max() for c in ends for name in ("wear_1", "wear_2")}
+    contact, deepest = max(depths, key=lambda curve: depths[curve])
+    if depths[contact, deepest] > 0:
+        return [FaceMap(frames, contact, name) for name in ("pressure", deepest)]
+    return [FaceMap(frames, max(ends, key=lambda c: ends[c]["pressure"].max()), "pressure")]
+
+
+Curve = tuple[str, str]
+"""Contact, and a column of its interface."""
 
 
 class CurvePanel(ScenePanel):
-    """Columns of ``interface.csv`` along the contact, with fixed axes."""
+    """Columns of the interfaces along the contacts, with fixed axes."""
 
-    def __init__(self, frames: FrameSequence, names: Sequence[str]):
-        self._states, self._names = frames.states, names
-        self._lines: dict[str, Line2D] = {}
+    def __init__(self, frames: FrameSequence, curves: Sequence[Curve]):
+        self._frames, self._states, self._curves = frames, frames.states, curves
+        self._lines: dict[Curve, Line2D] = {}
+        contacts = list(frames.bodies)
+        several = mpl.colormaps["tab20" if len(contacts) > 10 else "tab10"]
+        self._colors = {contact: several(k % several.N) for k, contact in enumerate(contacts)}
 
     def prepare(self, axis) -> None:
-        positions = [_curve(state, name)[0] for state in self._states for name in self._names]
+        positions = [self._at(state, curve)[0] for state in self._states for curve in self._curves]
         axis.set_xlim(min(x.min() for x in positions), max(x.max() for x in positions))
-        axis.set_xlabel(abscissa(self._states[-1].interface)[0])
-        if len(axis.get_legend_handles_labels()[0]) > 1:  # above the panel, outside the curves
+        last = self._states[-1]
+        axis.set_xlabel(last.interface.quantities[_abscissa(last)].axis)
+        if 1 < len(axis.get_legend_handles_labels()[0]) <= _MOST:  # above the panel
             where = {"loc": "lower right", "bbox_to_anchor": (1.0, 1.0), "borderaxespad": 0.0}
             axis.legend(fontsize="small", ncols=4, handlelength=1.5, **where)
 
     def show(self, state: FrameState) -> None:
-        for name, line in self._lines.items():
-            line.set_data(*_curve(state, name))
+        for curve, line in self._lines.items():
+            line.set_data(*self._at(state, curve))
+
+    def _dashed(self, curve: Curve) -> dict[str, Any]:
+        """Colour of a contact, with a line style by which coinciding curves are all visible."""
+        line = _LINES[self._curves.index(curve) % len(_LINES)]
+        return {"color": self._colors[curve[0]], "linestyle": line}
+
+    def _at(self, state: FrameState, curve: Curve) -> tuple[np.ndarray, np.ndarray]:
+        """Positions and values along a contact, or of body 2 along its track, if it has one."""
+        contact, name = curve
+        if name == "wear_2" and state.track is not None:
+            return state.track.drawn("x"), state.track.drawn(name)
+        table = state.interfaces[contact]
+        return table.drawn(_abscissa(self._states[-1])), table.drawn(name)
 
 
 class PressureCurve(CurvePanel):
-    """Contact pressure along the face, with its start and end in grey."""
+    """Contact pressure along each face; that of a pair with its start and end in grey."""
 
     def __init__(self, frames: FrameSequence):
-        super().__init__(frames, ["pressure"])
-        self._end = "steady" if frames.ends_steady else "end"
+        super().__init__(frames, [(contact, "pressure") for contact in frames.bodies])
 
     def prepare(self, axis) -> None:
         first, last = self._states[0], self._states[-1]
-        for state, line, label in ((first, "--", "start"), (last, "-", self._end)):
-            if state.interface["pressure"].max() > 0:
-                axis.plot(*_curve(state, "pressure"), line, label=label, **_FAINT)
-        moving = axis.plot(*_curve(first, "pressure"), color="tab:red", label="now")
-        self._lines["pressure"] = moving[0]
-        highest = max(top(state.interface.drawn("pressure")) for state in self._states)
-        axis.set_ylim(0.0, _AXIS_END * highest)
+        end = "steady" if self._frames.ends_steady else "end"
+        for state, line, label in ((first, "--", "start"), (last, "-", end)):
+            for curve in () if self._frames.several else self._curves:
+                if state.interface["pressure"].max() > 0:
+                    axis.plot(*self._at(state, curve), line, label=label, **_FAINT)
+        for curve in self._curves:
+            style: dict[str, Any] = {"color": "tab:red", "label": "now"}
+            if self._frames.several:
+                style = self._dashed(curve) | {"label": curve[0]}
+            (self._lines[curve],) = axis.plot(*self._at(first, curve), **style)
+        tables = [table for state in self._states for table in state.interfaces.values()]
+        axis.set_ylim(0.0, _AXIS_END * max(top(table.drawn("pressure")) for table in tables))
         axis.set_ylabel(last.interface.quantities["pressure"].wrapped)
         super().prepare(axis)
 
@@ -175,27 +216,42 @@ class WearCurves(CurvePanel):
 
     def prepare(self, axis) -> None:
         first, last = self._states[0], self._states[-1]
-        for name in self._names:
-            axis.plot(*_curve(last, name), label="_" if self._lines else "end", **_FAINT)
-            style = _STYLES[name] | {"label": f"body {name[-1]}"}
-            (self._lines[name],) = axis.plot(*_curve(first, name), **style)
-        depths = [_curve(state, name)[1].max() for state in self._states for name in self._names]
-        axis.set_ylim(_AXIS_END * max(depths), (1 - _AXIS_END) * max(depths))
+        for curve in self._curves:
+            axis.plot(*self._at(last, curve), label="_" if self._lines else "end", **_FAINT)
+            (self._lines[curve],) = axis.plot(*self._at(first, curve), **self._style(curve))
+        each = [self._at(state, curve)[1] for state in self._states for curve in self._curves]
+        deepest = max(depths.max() for depths in each)
+        axis.set_ylim(_AXIS_END * deepest, (1 - _AXIS_END) * deepest)
         axis.set_ylabel(last.interface.quantities["wear_1"].of_both.wrapped)
         super().prepare(axis)
+
+    def _style(self, curve: Curve) -> dict[str, Any]:
+        """Style of a curve: by body of a pair, by contact and body of several ones."""
+        contact, name = curve
+        side = int(name[-1])
+        if not self._frames.several:
+            return _STYLES[name] | {"label": f"body {side}"}
+        body = self._frames.bodies[contact][side - 1]
+        several = sum(self._frames.bodies[c][int(n[-1]) - 1] == body for c, n in self._curves)
+        label = f"{body} ({contact})" if several > 1 else body
+        return self._dashed(curve) | {"label": label}
 
 
 def contact_curves(frames: FrameSequence) -> list[CurvePanel]:
     """Panels of the pressure and, if a body wears, of the wear depths."""
-    worn = [name for name in _STYLES if _curve(frames.states[-1], name)[1].max() > 0]
+    last = frames.states[-1]
+    worn = [
+        (contact, name)
+        for contact, table in last.interfaces.items()
+        for name in _STYLES
+        if (table if last.track is None or name == "wear_1" else last.track)[name].max() > 0
+    ]
     return [PressureCurve(frames), *([WearCurves(frames, worn)] if worn else [])]
 
 
-def _curve(state: FrameState, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Positions and values along the contact, or of body 2 along its track, if it has one."""
-    if name == "wear_2" and state.track is not None:
-        return state.track.drawn("x"), state.track.drawn(name)
-    return abscissa(state.interface)[1], state.interface.drawn(name)
+def _abscissa(state: FrameState) -> str:
+    """Column along the contacts: x if all of them are nearly flat, see `panels.abscissa`."""
+    return "x" if all(is_flat(table) for table in state.interfaces.values()) else "s"
 
 
 class TimeCurve(ScenePanel):

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ... import tables
-from ...files import FRAMES, read_summary
+from ...files import FRAMES, bodies_of, contacts_of, name_at, read_summary
 from ...frames import frame_files
 
 _HISTORIES = ("history.csv", "cycles.csv", "loads.csv")
@@ -24,16 +24,23 @@ class FrameState:
     Attributes
     ----------
     time : float
-    interface, track : TableColumns
-        Columns of ``interface.csv``, and of ``track.csv`` in reciprocating analyses.
+    interfaces : dict of str to TableColumns
+        Columns of ``interface.csv`` by contact; that of a pair has no name.
+    track : TableColumns or None
+        Columns of ``track.csv`` in reciprocating analyses.
     file : Path
         File of the fields.
     """
 
     time: float
-    interface: tables.TableColumns
+    interfaces: dict[str, tables.TableColumns]
     track: tables.TableColumns | None
     file: Path
+
+    @property
+    def interface(self) -> tables.TableColumns:
+        """Columns of the first contact."""
+        return next(iter(self.interfaces.values()))
 
 
 @dataclass(frozen=True)
@@ -54,6 +61,8 @@ class FrameSequence:
         Field shown on the bodies: the temperature if there is one, else the stress.
     ends_steady : bool
         True if the final state is close to the steady state.
+    bodies : dict of str to (str, str)
+        Names of both bodies of each contact.
     """
 
     states: list[FrameState]
@@ -62,6 +71,12 @@ class FrameSequence:
     even: bool
     field: str
     ends_steady: bool
+    bodies: dict[str, tuple[str, str]]
+
+    @property
+    def several(self) -> bool:
+        """True for several bodies, whose contacts have names."""
+        return "" not in self.bodies
 
 
 class ScenePanel(ABC):
@@ -87,11 +102,18 @@ def read_frames(folder: Path) -> FrameSequence:
     name = next(name for name in _HISTORIES if (folder / name).is_file())
     history = tables.read(folder / name)
     end = float(history["time"][-1])
+    contacts = contacts_of(folder)
     states = [
-        _state(f.time, f.file("interface"), f.file("track"), f.file("fields"))
+        _state(
+            f.time,
+            {contact: f.file("interface", contact) for contact in contacts},
+            f.file("track"),
+            f.file("fields"),
+        )
         for f in frame_files(folder / FRAMES)
     ]
-    last = _state(end, *(folder / n for n in ("interface.csv", "track.csv", "fields.vtu")))
+    ends = {contact: folder / name_at("interface", None, contact) for contact in contacts}
+    last = _state(end, ends, folder / "track.csv", folder / "fields.vtu")
     case = tomllib.loads((folder / "case.resolved.toml").read_text("utf-8"))
     distance = read_summary(folder).get("distance_from_steady")
     return FrameSequence(
@@ -101,9 +123,11 @@ def read_frames(folder: Path) -> FrameSequence:
         even=name != "history.csv" or (folder / "heat.csv").is_file(),
         field="temperature" if np.isfinite(last.interface["temperature_1"]).all() else "von_mises",
         ends_steady=distance is not None and distance <= _STEADY,
+        bodies={contact: bodies_of(folder, contact) for contact in contacts},
     )
 
 
-def _state(time: float, interface: Path, track: Path, fields: Path) -> FrameState:
+def _state(time: float, interfaces: dict[str, Path], track: Path, fields: Path) -> FrameState:
     worn = tables.read(track) if track.is_file() else None
-    return FrameState(time, tables.read(interface), worn, fields)
+    columns = {contact: tables.read(path) for contact, path in interfaces.items()}
+    return FrameState(time, columns, worn, fields)

@@ -153,3 +153,22 @@ def test_a_tie_needs_two_bodies():
         tw.Tie(body.surface(ABOVE), body.surface(BELOW))
     with pytest.raises(tw.CaseError, match=r"^Tie\.conductance: "):
         tw.Tie(body.surface(ABOVE), block("two", 0.0, 1.0).surface(BELOW), -1.0).in_model([body])
+
+
+def test_a_strip_that_frets_between_two_blocks(between):
+    """requirement: gross slip of both contacts: 2 mu F, V = k E / mu but for the energy lost while
+    the first loads are applied at once; sliding motions are refused.
+    """
+    model, _, _ = between
+    press, base, strip = model.holders
+    pulled = tw.LoadHistory(["0 s", "1 s"], tangential_displacement=["0 um", "80 um"])
+    still = replace(model, motions={}, holders=[press, base, replace(strip, history=pulled)])
+    solution = still.fretting(increments=4)
+    assert solution.summary["tangential_force_N"] == pytest.approx(2 * FRICTION * FORCE, rel=1e-6)
+    for name in ("left-strip", "right-strip"):
+        found = solution.summary["contacts"][name]
+        assert found["friction_force_N"] == pytest.approx(FRICTION * FORCE, rel=1e-6)
+        worn = K / FRICTION * found["dissipated_energy_J"]
+        assert found["wear_volume_1_m3"] == pytest.approx(worn, rel=1e-4, abs=0.0)
+    with pytest.raises(tw.CaseError, match="motions: not supported in a fretting analysis"):
+        replace(still, motions=model.motions).fretting(increments=4)

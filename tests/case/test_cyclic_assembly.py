@@ -26,6 +26,7 @@ FRETTING = [
     Bad("motion", {"motions.strip": {"velocity": "1 m/s"}}, "motions.strip", NOT),
     Bad("heat", {"heat": {"cooling": {}}}, "heat", NOT),
     Bad("pressure", {"load.pressure": {"strip_left": "1 MPa"}}, "load.pressure", NOT),
+    Bad("reaction", {"holders.press.reaction": "grip"}, "holders.press.reaction", NOT),
     Bad("fluid", {"contact.fluid_pressure": "1 MPa"}, "contacts.upper.fluid_pressure", NOT),
     Bad(
         "friction law",

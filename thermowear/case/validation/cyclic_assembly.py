@@ -33,6 +33,9 @@ def unsupported(case: AssemblyCase) -> Iterator[Fault]:
         for key in ("friction_history", "fluid_pressure"):
             if getattr(contact, key) is not None:
                 yield f"{path}.{key}", refused
+    for name, holder in case.holders.items():
+        if holder.reaction is not None:
+            yield f"holders.{name}.reaction", refused
     for name, wear in case.wear.items():
         if wear.spread != "in-place":
             yield f"wear.{name}.spread", refused

@@ -49,17 +49,18 @@ def require_support(system: System) -> None:
     )
 
 
-def require_no_fluid(system: System, analysis: Analysis) -> None:
-    """Reject a fluid between the faces in analyses of faces that move back and forth.
+def require_one_way(system: System, analysis: Analysis) -> None:
+    """Reject what analyses of faces that move back and forth do not support: fluids, reactions.
 
     Raises
     ------
     CaseError
     """
-    wet = [one.table for one in system.model.interfaces if one.fluid_pressure is not None]
-    if wet and analysis.cyclic:
-        text = f"is not supported in a {analysis.type} analysis"
-        raise CaseError(f"{wet[0]}.fluid_pressure: {text}")
+    model = system.model
+    keys = [f"{one.table}.fluid_pressure" for one in model.interfaces if one.fluid_pressure]
+    keys += [f"holders.{one.name}.reaction" for one in model.holders if one.reaction]
+    if keys and analysis.cyclic:
+        raise CaseError(f"{keys[0]}: is not supported in a {analysis.type} analysis")
 
 
 def moved_against_load(

@@ -37,7 +37,7 @@ from .checks import (
     inclined_faces,
     moved_against_load,
     open_contact,
-    require_no_fluid,
+    require_one_way,
     require_support,
 )
 from .positioning import prepare
@@ -125,7 +125,7 @@ def analyse(
     system = wearing_faces(system, analysis, observer)
     if not isinstance(analysis, FrettingAnalysis):  # where friction carries loads, too
         require_support(system)
-    require_no_fluid(system, analysis)
+    require_one_way(system, analysis)
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:
             observer.note(note)

@@ -129,7 +129,7 @@ def settled(
     if after.stored is not None or disturbed <= tolerance * float(expected.max()):
         return after
     grown = worn.carried(last.worn - before.worn, contacts)
-    start = replace(after, worn=after.worn - grown)
+    start = replace(after, worn=after.worn - grown, removed=before.removed)
     return advance_with_error(problem, start, time, step).state
 
 

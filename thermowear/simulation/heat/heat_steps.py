@@ -273,9 +273,10 @@ class HeatSteps:
         made = float(face.weights @ friction_heat)
         exchanged = made + load.magnitude + conduction.exchanged_heat(rise, nodal, load.ambient)
         largest = max(before.largest, float(np.abs(faces.rise).max()), self.largest(rise))
-        each = into_bodies(self._system, self._thermal, faces, rise, load, gained)
-        flows = np.array([made + load.prescribed, lost, exchanged, *each.ravel()])
-        return StoredHeat(rise, content, before.turnover + step * flows, largest)
+        flows = [made + load.prescribed, lost, exchanged]
+        if len(before.turnover) > len(flows):
+            flows += [*into_bodies(self._system, self._thermal, faces, rise, load, gained).ravel()]
+        return StoredHeat(rise, content, before.turnover + step * np.array(flows), largest)
 
     def largest(self, rise: np.ndarray) -> float:
         """Largest rise inside the bodies with other heat sources, else 0 [K]; every rank calls.
@@ -292,9 +293,7 @@ class HeatSteps:
     def restore(self, data: Any) -> None:
         """Restore the state from `restart_data`."""
 
-    def _conducting(
-        self, operators: Any, load: ThermalLoad, supplied: np.ndarray, rise: np.ndarray
-    ) -> HeatStep:
+    def _conducting(self, operators, load: ThermalLoad, supplied, rise: np.ndarray) -> HeatStep:
         """Conduction at one time, with nodal heat without the contact and an initial rise."""
         baseline = operators.baseline(operators.rise(load, supplied))
         return HeatStep(operators, load, supplied, baseline)

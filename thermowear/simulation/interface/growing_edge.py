@@ -35,17 +35,22 @@ _STEP_AFTER_CONTACT = 0.4
 
 
 class GrowingEdge:
-    """Edge of the wear in a contact that may grow by wear, and borders between layers."""
+    """Edge of the wear in a contact that may grow by wear, and borders between layers.
+
+    Attributes
+    ----------
+    method : ContactSolver
+    wear : InterfaceWear
+    """
 
     def __init__(self, system: System, method: ContactSolver, wear: InterfaceWear):
-        self._wear = wear
+        self.method, self.wear = method, wear
         self._facet, self._basis = system.contacts.facet, system.basis
         self._weights = system.weights
-        self._method = method
 
     def partial_zones(self, worn: np.ndarray) -> list[np.ndarray]:
         """Points within each edge that is on the face: worn ones, and those below each layer."""
-        zones = [np.any(worn > 0.0, axis=0), *self._wear.below_layers(worn)]
+        zones = [np.any(worn > 0.0, axis=0), *self.wear.below_layers(worn)]
         return [zone for zone in zones if zone.any() and not zone.all()]
 
     def points(
@@ -124,5 +129,5 @@ class GrowingEdge:
     def _take_up_time(self, state: InterfaceState, points: np.ndarray, slope: np.ndarray) -> float:
         """Shortest time in which wear takes up the elastic deflection under single points [s]."""
         assert state.pointwise is not None
-        point_compliance = self._method.point_compliance(state.pointwise)[points]
+        point_compliance = self.method.point_compliance(state.pointwise)[points]
         return float((point_compliance[slope > 0.0] / slope[slope > 0.0]).min(initial=np.inf))

@@ -21,7 +21,7 @@ from .interface_wear import InterfaceWear
 from .pointwise_method import PointwiseMethod
 from .sdirk import InterfaceState, WearProblem
 from .steady import SteadyState
-from .steady_limit import SteadyLimit
+from .steady_limit import SteadyLimit, steady_limit
 
 _UNWORN = (
     "contact: the iteration for the contact set and the state-dependent properties did not "
@@ -45,7 +45,7 @@ class InterfaceProblem(WearProblem):
         self._last_conditions: tuple[bytes, InterfaceConditions] | None = None
         self._wear = InterfaceWear(system)
         self._edge = GrowingEdge(system, method, self._wear)
-        self._limit = SteadyLimit(method, self._wear, self._edge)
+        self._limit: SteadyLimit | None = None
         self._gap, n = system.contacts.gap - system.holder.imposed, len(system.weights)
         self._softness, self._rigid = system.softness, Slope.diagonal(np.zeros(n))
         self._unworn = np.zeros((len(self._wear.laws), n))
@@ -78,9 +78,8 @@ class InterfaceProblem(WearProblem):
 
     def start(self) -> InterfaceState:
         if self.heat is None or not self.stores_heat:
-            found = self.unworn()
-        else:
-            found = self._at_temperatures(self._unworn, self.heat.initial, 0.0)
+            return replace(self.unworn(), removed=self._wear.nothing)
+        found = self._at_temperatures(self._unworn, self.heat.initial, 0.0)
         return replace(found, removed=self._wear.nothing)
 
     def take_over(
@@ -155,8 +154,9 @@ class InterfaceProblem(WearProblem):
             nonlocal found
             found = self._solve(before.worn, conditions, heat, edge, found, step)
             faces = heat.faces(conditions, found.pressure) if heat is not None and faced else None
-            rates = self._rates(conditions, step)
-            worn, removed = self._wear.after(before, rates, found.pressure)
+            rates, p = self._rates(conditions, step), found.pressure
+            plain = (before.worn + rates.depths(p), None) if self._wear.is_plain else None
+            worn, removed = plain or self._wear.after(before, rates, p)
             return InterfaceState(worn, found, before.peak, faces, None, edge, removed)
 
         if model.depends_on_state:
@@ -191,8 +191,8 @@ class InterfaceProblem(WearProblem):
 
     def _rates(self, conditions: InterfaceConditions, step: float = 1.0) -> WearRates:
         """Wear rates under given conditions, for wear in a time step [s]."""
-        laws, spreads = self._wear.laws, self._wear.spreads
-        return WearRates(laws, spreads, conditions.wear, conditions.states, step)
+        own, at = self._wear, conditions
+        return WearRates(own.laws, own.spreads, at.wear, at.states, step)
 
     def _solve(
         self,
@@ -221,7 +221,8 @@ class InterfaceProblem(WearProblem):
         if step == 0.0 or not self._wear.laws:
             return solve(self._rigid.point, self._rigid, start)
         start = start or solve(self._rigid.point, self._rigid, None)
-        wear = self._wear.in_step(worn, self._rates(conditions, step))
+        rates = self._rates(conditions, step)
+        wear = self._wear.in_step(worn, rates) if self._wear.layered else rates
         return newton_with_wear(solve, wear, start)
 
     def contact_state(self, state: InterfaceState, time: float) -> ContactState:
@@ -271,10 +272,12 @@ class InterfaceProblem(WearProblem):
         """Relative difference to the steady pressure; NaN without one, or with layers left on."""
         if steady is None:
             return float("nan")
-        limit = self._limit.pressure(steady, state)
-        if self._wear.layered and self._wear.are_left(state.worn, limit > 0.0):
+        last = self._limit
+        if last is None or last.steady is not steady or last.edge is not state.pointwise:
+            last = self._limit = steady_limit(self._edge, steady, state, last)
+        if self._wear.layered and self._wear.are_left(state.worn, last.pressure > 0.0):
             return float("nan")
-        return float(np.abs(state.pressure - limit).max() / limit.max())
+        return float(np.abs(state.pressure - last.pressure).max() / last.pressure.max())
 
 
 def interface_problem(

@@ -26,6 +26,8 @@ class InterfaceWear:
         Distributions of the wear of these bodies.
     layered : bool
         True if a face has layers.
+    is_plain : bool
+        True if depths alone describe the wear of a step: a pair without layers.
     nothing : ndarray or None, shape (n_wearing, n_interfaces)
         Volumes worn off at the start; None for a pair.
     """
@@ -35,6 +37,7 @@ class InterfaceWear:
         self._layers = [layers_of(law) for law in self.laws]
         self._ranges = system.contacts.ranges
         self.layered = any(layers.thickness for layers in self._layers)
+        self.is_plain = system.model.is_pair and not self.layered
         self.nothing: np.ndarray | None = None
         if self.laws and not system.model.is_pair:
             self.nothing = np.zeros((len(self.laws), len(self._ranges)))

@@ -119,7 +119,7 @@ HISTORY = {"time": ["0 s", "1 s"], "force": ["1 N", "2 N"]}
             {"holders": {"left": {"surface": "left_top", "history": HISTORY}}},
             "holders.left.history: requires a transient analysis, not stability",
         ),
-        ({"contact": {"friction": "0.3 + v/(1 m/s)"}}, "contacts.left.friction: is not constant"),
+        ({"contact": {"friction": "0.3 + v/(1 m/s)"}}, "contacts.left.friction: depends on v"),
     ],
 )
 def test_faults(changes, line):

@@ -32,7 +32,7 @@ PICTURES = {
 }
 """Pictures of a run with their captions, in the order of the report."""
 
-_BY_CONTACT = (
+BY_CONTACT = (
     *("interface", "profile", "wear", "coating", "faces"),
     *("mode", "friction", "track"),
 )
@@ -132,7 +132,7 @@ def is_ours(path: Path) -> bool:
     if name == "report.html":
         return is_report(path)
     contacts = contacts_of(path.parent)
-    pictures = {picture(each, contact) for each in _BY_CONTACT for contact in contacts}
+    pictures = {picture(each, contact) for each in BY_CONTACT for contact in contacts}
     stem, contact, time = table_file(name)
     known = name == name_at(stem, time, contact) and contact in ("", *contacts)
     table = TABLES.get(stem) if known else None

@@ -60,6 +60,20 @@ def carried_wear(before: System, after: System, worn: np.ndarray) -> tuple[np.nd
     return rows, error
 
 
+def carried_growth(before: System, after: System, grown: np.ndarray) -> np.ndarray:
+    """Volume-preserving transfer of the wear of a step (n_wearing, n) to the moved mesh [m]."""
+    assert after.worn is not None
+    sides = list(after.laws)
+    areas = before.worn_areas[sides], after.worn_areas[sides]
+    rows = after.worn.carried(grown, after.contacts)
+    for old, new in zip(before.contacts.ranges, after.contacts.ranges, strict=True):
+        had = (areas[0] * grown)[:, old].sum(axis=1)
+        has = (areas[1] * rows)[:, new].sum(axis=1)
+        kept = np.divide(had, has, out=np.ones_like(has), where=has > 0.0)
+        rows[:, new] *= kept[:, None]
+    return rows
+
+
 def carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.ndarray, float]:
     """Temperature rise of the bodies transferred to the moved mesh [K], and its error."""
     assert before.thermal is not None

@@ -24,7 +24,13 @@ from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..system.worn_geometry import WornContact, WornGeometry, along
-from .carrying import carried_rise, carried_wear, change_by_update, with_carried_fluxes
+from .carrying import (
+    carried_growth,
+    carried_rise,
+    carried_wear,
+    change_by_update,
+    with_carried_fluxes,
+)
 from .moving_faces import (
     FaceKey,
     MovingFaces,
@@ -98,6 +104,7 @@ def updated(
 
 
 def settled(
+    former: InterfaceProblem,
     problem: InterfaceProblem,
     before: InterfaceState,
     last: InterfaceState,
@@ -113,8 +120,8 @@ def settled(
 
     Parameters
     ----------
-    problem : InterfaceProblem
-        Problem on the new meshes.
+    former, problem : InterfaceProblem
+        Problems on the former and on the new meshes.
     before, last, after : InterfaceState
         States before and after the last step, and after the update.
     time, step : float
@@ -128,7 +135,7 @@ def settled(
     disturbed = float(np.abs(after.pressure - expected).max())
     if after.stored is not None or disturbed <= tolerance * float(expected.max()):
         return after
-    grown = worn.carried(last.worn - before.worn, contacts)
+    grown = carried_growth(former.system, problem.system, last.worn - before.worn)
     start = replace(after, worn=after.worn - grown, removed=before.removed)
     return advance_with_error(problem, start, time, step).state
 

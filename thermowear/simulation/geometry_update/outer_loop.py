@@ -277,9 +277,9 @@ class OuterLoop:
 
     def _end(self, now: MeshPeriod, before: Moment, last: Moment) -> tuple[MeshPeriod, Moment]:
         """Period and moment after a final update, so that the run ends with worn meshes."""
-        now, after = self._update(now, last)
+        former, (now, after) = now.problem, self._update(now, last)
         states, tolerance = (before.state, last.state, after.state), self._settings.tolerance
-        state = settled(now.problem, *states, before.time, after.step, tolerance)
+        state = settled(former, now.problem, *states, before.time, after.step, tolerance)
         return now, replace(after, state=state)
 
     def _update(self, now: MeshPeriod, last: Moment) -> tuple[MeshPeriod, Moment]:

@@ -99,7 +99,7 @@ class WearRates:
 
     def __call__(self, pressure: np.ndarray) -> np.ndarray:
         """Wear rates, shape (n_wearing, n) [m/s]."""
-        rates = np.zeros_like(self.factors)
+        rates = np.empty_like(self.factors)
         for row, law in enumerate(self.laws):
             rates[row] = self.by(law, row, pressure)
         return rates
@@ -144,7 +144,7 @@ class WearRates:
         for row, law, weight in terms:
             spread = self.spreads[row]
             local = self.factors[row] * law.slope(LocalState(pressure, *self.states[row]))
-            point += weight * (spread.share * local)
+            point += local * (weight * spread.share)
             if spread.means is not None and spread.means.varies:
                 rows.append(spread.means.rows * local)
                 reach.append(np.reshape(weight, (-1, 1)) * spread.means.reach)

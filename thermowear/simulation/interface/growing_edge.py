@@ -50,7 +50,9 @@ class GrowingEdge:
 
     def partial_zones(self, worn: np.ndarray) -> list[np.ndarray]:
         """Points within each edge that is on the face: worn ones, and those below each layer."""
-        zones = [np.any(worn > 0.0, axis=0), *self.wear.below_layers(worn)]
+        zones = [np.any(worn > 0.0, axis=0)]
+        if self.wear.layered:
+            zones += self.wear.below_layers(worn)
         return [zone for zone in zones if zone.any() and not zone.all()]
 
     def points(

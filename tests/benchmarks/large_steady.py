@@ -22,7 +22,7 @@ from thermowear.model import StaticAnalysis
 from thermowear.results import Result
 from thermowear.simulation.analyses.positioning import prepare
 from thermowear.simulation.analyses.run import needs_single_solution, solve
-from thermowear.simulation.from_case.model import model_of
+from thermowear.simulation.from_case import model_of
 
 from ..simulation.hot_solids import BlockMeshes, hot_blocks
 from ..simulation.turning_disk import turning_case

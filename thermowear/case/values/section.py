@@ -41,7 +41,7 @@ class Section(BaseModel):
     ``time = { values = [0, 1, 2], unit = "s" }``.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, validate_default=False)
+    model_config = ConfigDict(defer_build=True, extra="forbid", frozen=True, validate_default=False)
 
     @model_validator(mode="before")
     @classmethod

@@ -35,6 +35,20 @@ def thermowear(ranks, *arguments, module="thermowear", timeout=300):
     )
 
 
+def same_on_two_ranks(module, folder, expected, *arguments, rtol=1e-8):
+    """Values by name that a module saves on each of two ranks, against serial ones.
+
+    Differences are relative to the largest value of the same name.
+    """
+    done = thermowear(2, *arguments, folder, module=module)
+    assert done.returncode == 0, done.stderr
+    for rank in (0, 1):
+        parallel = np.load(folder / f"found_{rank}.npz")
+        for name, values in expected.items():
+            atol = rtol * np.nanmax(np.abs(values))
+            np.testing.assert_allclose(parallel[name], values, rtol=0.0, atol=atol, err_msg=name)
+
+
 def summaries(tmp_path, case, *overrides):
     found = []
     for ranks in (1, 2):
@@ -114,16 +128,7 @@ def test_an_error_ends_all_ranks_with_one_message(tmp_path, arguments, message):
 
 def test_a_model_in_python_on_a_distributed_mesh(tmp_path):
     """requirement: two ranks give the interface and the fields of the serial model to 1e-8."""
-    serial = on_ranks.computed()
-    done = thermowear(2, "steady", tmp_path, module="tests.scripting.on_ranks")
-    assert done.returncode == 0, done.stderr
-    for rank in (0, 1):
-        parallel = np.load(tmp_path / f"found_{rank}.npz")
-        for name, expected in serial.items():
-            scale = np.nanmax(np.abs(expected))
-            np.testing.assert_allclose(
-                parallel[name], expected, rtol=0.0, atol=1e-8 * scale, err_msg=name
-            )
+    same_on_two_ranks("tests.scripting.on_ranks", tmp_path, on_ranks.computed(), "steady")
 
 
 def test_a_state_is_saved_on_two_ranks(tmp_path):

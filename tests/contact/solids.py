@@ -11,12 +11,12 @@ import numpy as np
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.faces.face import gather_face
 from thermowear.contact.operators.condensation import condense
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace
 from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.geometry.meshing.cells import divided_hexahedra, mesh_lattice, tagged_bodies
 from thermowear.laws.motions import translation

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from thermowear.contact.faces.face import Face, _opened
 from thermowear.contact.search.common_face import opposite
-from thermowear.contact.search.face import Face, _opened
 
 RADIUS = 0.1
 FACETS = 24

@@ -9,12 +9,12 @@ from thermowear.bulk import column_blocks
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.faces.face import gather_face
 from thermowear.contact.operators.condensation import condense, influence
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace, vector_trace
 from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.laws.motions import translation

@@ -13,6 +13,7 @@ from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.solver_choice import SolverChoice, choose_solver
 from thermowear.bulk.spaces import lagrange_spaces
+from thermowear.contact.faces.face import gather_faces
 from thermowear.contact.full.full_system import FullContact
 from thermowear.contact.full.nitsche import default_penalty, nitsche_stiffness, normal_traction
 from thermowear.contact.operators.condensation import condense
@@ -20,7 +21,6 @@ from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace
 from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.face import gather_faces
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.contact.ties.joints import glued_points, transferred

@@ -13,6 +13,7 @@ from thermowear.bulk.heat.varying import varying_conduction
 from thermowear.bulk.kinematics import Axisymmetric, Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
+from thermowear.contact.faces.face import gather_faces
 from thermowear.contact.operators.condensation import (
     bath_matrix,
     condense_heat,
@@ -26,7 +27,6 @@ from thermowear.contact.operators.pressure import joined_bases, pressure_basis
 from thermowear.contact.operators.thermal_opening import ThermalOpening, condense_distortion
 from thermowear.contact.operators.traces import face_traces, gap_trace, value_trace
 from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.face import gather_faces
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.ties.joints import elastic_joints, thermal_joints, transferred
 from thermowear.parallel import sum_over_ranks

@@ -12,6 +12,7 @@ from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
+from thermowear.contact.faces.face import gather_face
 from thermowear.contact.operators.condensation import (
     bath_matrix,
     condense_heat,
@@ -24,7 +25,6 @@ from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.thermal_opening import ThermalOpening, condense_distortion
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.laws.motions import translation
 from thermowear.parallel import sum_over_ranks

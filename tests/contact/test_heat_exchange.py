@@ -10,13 +10,13 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, Spatial
 from thermowear.bulk.spaces import lagrange_spaces
+from thermowear.contact.faces.face import gather_face
 from thermowear.contact.operators.condensation import bath_matrix, condense_heat
 from thermowear.contact.operators.exchange_update import ReferenceExchange
 from thermowear.contact.operators.heat_exchange import FaceHeat, baseline_response
 from thermowear.contact.operators.pressure import dense, pressure_basis
 from thermowear.contact.operators.thermal_opening import ThermalDistortion
 from thermowear.contact.operators.traces import value_trace
-from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 
 from ..conftest import two_blocks

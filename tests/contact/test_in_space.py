@@ -8,13 +8,13 @@ from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
+from thermowear.contact.faces.face import gather_face
 from thermowear.contact.operators.condensation import bath_matrix, condense, condense_heat
 from thermowear.contact.operators.heat_exchange import FaceHeat, baseline_response
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.laws.motions import rotation, translation

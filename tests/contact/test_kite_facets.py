@@ -9,8 +9,8 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Spatial
 from thermowear.case.tables.schema import MeshTable
 from thermowear.case.values.section import MODEL
+from thermowear.contact.faces.face import gather_faces
 from thermowear.contact.search.clipping import parts_opposite
-from thermowear.contact.search.face import gather_faces
 from thermowear.contact.search.pairing import pair
 from thermowear.geometry.geometries.mesh_file import MeshFile
 

@@ -12,12 +12,12 @@ from thermowear import CaseError
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Axisymmetric
 from thermowear.bulk.spaces import lagrange_spaces
+from thermowear.contact.faces.face import Face, gather_face
+from thermowear.contact.faces.projection import project
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.face import Face, gather_face
 from thermowear.contact.search.pairing import pair
-from thermowear.contact.search.projection import project
 from thermowear.parallel import sum_over_ranks
 
 from ..bulk.fields import interpolated

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermowear.contact.search.face import Face
-from thermowear.contact.search.projection import overhang, project, ray_intersections
+from thermowear.contact.faces.face import Face
+from thermowear.contact.faces.projection import overhang, project, ray_intersections
 from thermowear.contact.search.refinement import rule
 
 

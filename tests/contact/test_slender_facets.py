@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.kinematics import Spatial
+from thermowear.contact.faces.projection import project
+from thermowear.contact.faces.slender_facets import slenderness
 from thermowear.contact.search.pairing import pair
-from thermowear.contact.search.projection import project
-from thermowear.contact.search.slender_facets import slenderness
 
 from .solids import SIZE, gathered, two_solids
 

@@ -14,13 +14,13 @@ from thermowear import ComputationError
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.faces.face import gather_face
 from thermowear.contact.friction import stick_slip
 from thermowear.contact.friction.stick_slip import FullSliding, advance, follow
 from thermowear.contact.friction.stick_slip_state import Status, unloaded
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.tangential import condense_tangential
 from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.parallel import sum_over_ranks

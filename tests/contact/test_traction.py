@@ -10,12 +10,12 @@ import pytest
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.contact.faces.face import gather_face
 from thermowear.contact.full.nitsche import (
     normal_traction,
     on_every_facet,
     thermal_traction,
 )
-from thermowear.contact.search.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.parallel import sum_over_ranks

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.kinematics import Axisymmetric, Spatial
-from thermowear.contact.search.face import Face
+from thermowear.contact.faces.face import Face
 from thermowear.contact.search.pairing import pair, paired
 from thermowear.contact.wear.worn_face import Paths, WornFace, curvatures, node_normals, nodes_of
 

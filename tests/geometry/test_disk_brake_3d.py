@@ -13,7 +13,7 @@ from thermowear.bulk.heat.even_paths import EvenPaths
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.case.tables.schema import MeshTable
-from thermowear.contact.search.face import gather_face
+from thermowear.contact.faces.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
 from thermowear.geometry.geometries.brakes.disk_brake_3d import DiskBrakeInSpace

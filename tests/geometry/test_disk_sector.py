@@ -12,7 +12,7 @@ from dolfinx import fem
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Spatial
 from thermowear.case.tables.schema import MeshTable
-from thermowear.contact.search.face import gather_face
+from thermowear.contact.faces.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.geometry.geometries.brakes.disk_brake import DiskSector
 from thermowear.parallel import sum_over_ranks

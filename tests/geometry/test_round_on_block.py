@@ -9,7 +9,7 @@ from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import kinematics_of
 from thermowear.case.tables.geometry import Pressing
 from thermowear.case.tables.schema import MeshTable
-from thermowear.contact.search.face import gather_face
+from thermowear.contact.faces.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
 from thermowear.geometry.geometries.on_block import CylinderOnBlock, SphereOnBlock

@@ -21,7 +21,7 @@ from thermowear.verification.check import computed
 
 from ..app.test_resume import assert_the_same
 from ..test_parallel import pytestmark as needs_mpirun
-from ..test_parallel import thermowear
+from ..test_parallel import same_on_two_ranks
 from . import assembly_on_ranks
 
 UNEQUAL = Brake("floating", 9.0, heated=True, elements=4)
@@ -135,14 +135,8 @@ def test_other_units():
 @pytest.mark.parametrize("kind", assembly_on_ranks.KINDS)
 def test_two_ranks(tmp_path, kind):
     """requirement: two ranks give the running-in of the serial run, to 1e-8."""
-    done = thermowear(2, kind, tmp_path, module="tests.simulation.assembly_on_ranks")
-    assert done.returncode == 0, done.stderr
     expected = assembly_on_ranks.computed(kind)
-    for rank in (0, 1):
-        parallel = np.load(tmp_path / f"found_{rank}.npz")
-        for name, values in expected.items():
-            atol = 1e-8 * np.abs(values).max()
-            np.testing.assert_allclose(parallel[name], values, rtol=0.0, atol=atol, err_msg=name)
+    same_on_two_ranks("tests.simulation.assembly_on_ranks", tmp_path, expected, kind)
 
 
 def test_a_run_goes_on_from_its_checkpoint(tmp_path, capsys):

@@ -11,7 +11,7 @@ from thermowear.simulation.heat import exchange_cache
 from thermowear.simulation.runtime.observer import Observer
 from thermowear.simulation.system.system import System
 
-from ..test_parallel import thermowear
+from ..test_parallel import same_on_two_ranks
 from .running_in_on_ranks import FEW, columns, running_in
 
 SOFTENING = Table1D((293.15, 493.15), (1.0, 1.3))
@@ -84,13 +84,7 @@ def test_exchange_of_large_faces(monkeypatch, conductance):
 @pytest.mark.parametrize(("kind", "conductance"), [("quasi-steady", "perfect"), ("in time", "2e4")])
 def test_two_ranks(tmp_path, kind, conductance):
     """requirement: two ranks give the running-in of the serial run, to 1e-8."""
-    module = "tests.simulation.running_in_on_ranks"
-    done = thermowear(2, kind, conductance, tmp_path, module=module)
-    assert done.returncode == 0, done.stderr
     given = None if conductance == "perfect" else float(conductance)
-    expected = running_in(kind, given, steps=FEW)
-    for rank in (0, 1):
-        parallel = np.load(tmp_path / f"found_{rank}.npz")
-        for name, values in columns(expected).items():
-            atol = 1e-8 * np.abs(values).max()
-            np.testing.assert_allclose(parallel[name], values, rtol=0.0, atol=atol, err_msg=name)
+    expected = columns(running_in(kind, given, steps=FEW))
+    module = "tests.simulation.running_in_on_ranks"
+    same_on_two_ranks(module, tmp_path, expected, kind, conductance)

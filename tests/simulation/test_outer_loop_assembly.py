@@ -26,7 +26,7 @@ from thermowear.verification.check import computed, starter
 from ..app.test_resume import assert_the_same
 from ..systems import built
 from ..test_parallel import pytestmark as needs_mpirun
-from ..test_parallel import thermowear
+from ..test_parallel import same_on_two_ranks
 from . import deep_brake
 from .deep_brake import DISK, DURATION, PAD, worn
 from .hot_ring import HEAT
@@ -287,14 +287,8 @@ def test_a_worn_face_beside_a_joint_keeps_its_wear_in_the_gap(tmp_path, capsys):
 @pytest.mark.parametrize("kind", ["cold", pytest.param("in time", marks=pytest.mark.slow)])
 def test_two_ranks(tmp_path, kind):
     """requirement: two ranks give the deep wear of the serial run, to 1e-8."""
-    done = thermowear(2, kind, tmp_path, module="tests.simulation.deep_brake")
-    assert done.returncode == 0, done.stderr
     expected = deep_brake.columns(kind == "in time")
-    for rank in (0, 1):
-        parallel = np.load(tmp_path / f"found_{rank}.npz")
-        for name, values in expected.items():
-            atol = 1e-8 * np.abs(values).max()
-            np.testing.assert_allclose(parallel[name], values, rtol=0.0, atol=atol, err_msg=name)
+    same_on_two_ranks("tests.simulation.deep_brake", tmp_path, expected, kind)
 
 
 def test_a_run_goes_on_from_its_checkpoint(tmp_path, capsys):

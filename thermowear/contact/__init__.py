@@ -1,5 +1,6 @@
 """The interface: contact points, traces, condensation, contact and heat exchange."""
 
+from .faces.face import Face, Surface, gather_face
 from .friction.stick_slip import advance, follow
 from .friction.stick_slip_state import Loads, StickSlipState
 from .full.full_system import FullContact, FullSolution
@@ -12,6 +13,5 @@ from .operators.rigid_motion import RigidHolder, RigidMode, Sliding, hold, slidi
 from .operators.tangential import FrictionalContact, condense_tangential
 from .operators.thermal_opening import condense_distortion
 from .operators.traces import gap_trace, value_trace, vector_trace
-from .search.face import Face, Surface, gather_face
 from .search.pairing import Pairing, pair
 from .solvers.signorini import SignoriniSolution, solve_contact

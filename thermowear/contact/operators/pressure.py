@@ -18,8 +18,8 @@ import scipy.sparse as sp
 from scipy.special import comb, factorial
 
 from ...lagrange import lattice
+from ..faces.face import Surface
 from ..search.contacts import Contacts
-from ..search.face import Surface
 from ..search.pairing import Pairing
 
 Basis: TypeAlias = "np.ndarray | sp.csr_array"

@@ -1,1 +1,1 @@
-"""Contact search: faces, projection, common refinement, pairing."""
+"""Contact search: common part of two faces, common refinement, pairing."""

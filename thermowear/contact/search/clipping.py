@@ -15,10 +15,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...lagrange import corner_nodes, lattice
+from ..faces.face import Surface
+from ..faces.projection import within
 from .common_face import MAX_FACING_COSINE, opposite, opposite_parameters
-from .face import Surface
 from .polygons import TOLERANCE, Polygons, anticlockwise, cut, divided, tidied
-from .projection import within
 
 _MAX_EDGE_DEVIATION = 3e-3
 """Largest deviation, relative to a facet, of an edge that is treated as straight."""

@@ -28,9 +28,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...parallel import rows_over_ranks
-from .face import Face, Surface
-from .projection import MIN_COSINE, nearest, overhang, project
-from .smooth_normals import across
+from ..faces.face import Face, Surface
+from ..faces.projection import MIN_COSINE, nearest, overhang, project
+from ..faces.smooth_normals import across
 
 Line = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 MAX_FACING_COSINE = -0.5

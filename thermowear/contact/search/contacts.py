@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...errors import CaseError
-from .face import Surface
+from ..faces.face import Surface
 from .pairing import Pairing
 
 

@@ -26,8 +26,8 @@ from scipy.spatial import cKDTree
 
 from ...bulk.kinematics import Kinematics
 from ...errors import CaseError
+from ..faces.face import Face, Surface
 from .common_face import opposite, stretch
-from .face import Face, Surface
 from .refinement import OVERHANG_TOLERANCE, SLIVER, Rule, ambiguity_message, rule
 
 _COINCIDENCE_TOLERANCE = 1e-10

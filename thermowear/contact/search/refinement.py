@@ -12,9 +12,9 @@ import numpy as np
 
 from ...errors import CaseError
 from ...lagrange import lobatto, on_lattice
+from ..faces.face import Face, Surface
 from .clipping import parts_opposite
 from .common_face import MAX_FACING_COSINE, Opposite, opposite
-from .face import Face, Surface
 
 OVERHANG_TOLERANCE = 1e-9
 """Largest tangential distance from body 2, relative to the face, of paired points."""

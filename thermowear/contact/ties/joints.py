@@ -18,9 +18,9 @@ from ...bulk.joints.joint import Joint, Joints
 from ...bulk.kinematics import Kinematics
 from ...bulk.spaces import Spaces
 from ...errors import CaseError
+from ..faces.face import Face, Surface
 from ..operators.pressure import pressure_basis
 from ..operators.traces import value_trace
-from ..search.face import Face, Surface
 from ..search.pairing import PairedFace, Pairing, pair
 
 _SMALLER = 1 - 1e-6

@@ -15,7 +15,7 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from ...lagrange import lattice, neighbour_nodes
-from ..search.face import Face, Surface
+from ..faces.face import Face, Surface
 from ..search.pairing import PairedFace, Pairing
 
 _ROUGH = 1e-8

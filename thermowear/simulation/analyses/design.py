@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...contact.search.face import Face, Surface
+from ...contact.faces.face import Face, Surface
 from ...geometry.cad.design import Design
 from ...laws.principle.least_worn import least_worn
 from ..interface.body_state import body_state

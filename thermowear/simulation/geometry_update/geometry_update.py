@@ -8,7 +8,7 @@ import numpy as np
 
 from ...balances import relative, require
 from ...bulk.mesh_motion import extended
-from ...contact.search.face import Surface
+from ...contact.faces.face import Surface
 from ...contact.search.refinement import Rule
 from ...contact.wear.worn_face import nodes_of
 from ...errors import CaseError, ComputationError

@@ -10,10 +10,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...bulk.mesh_motion import serial_extension
+from ...contact.faces.face import Surface
+from ...contact.faces.projection import ray_intersections
 from ...contact.operators.pressure import jumps, unresolved_gap
-from ...contact.search.face import Surface
 from ...contact.search.pairing import Pairing
-from ...contact.search.projection import ray_intersections
 from ...contact.wear.worn_face import (
     Paths,
     WornFace,

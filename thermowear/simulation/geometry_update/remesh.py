@@ -9,8 +9,8 @@ import numpy as np
 import scipy
 
 from ...bulk.mesh_motion import serial_extension
+from ...contact.faces.face import Face
 from ...contact.search.contacts import Contacts
-from ...contact.search.face import Face
 from ...contact.search.pairing import PairedFace, Pairing
 from ...errors import ComputationError
 from ...geometry.mesh.mixed import block_of

@@ -13,6 +13,8 @@ from ...bulk.bodies import Bodies, distribute
 from ...bulk.kinematics import Kinematics, kinematics_of
 from ...bulk.mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
 from ...bulk.solver_choice import SolverChoice, choose_solver
+from ...contact.faces.face import gather_faces
+from ...contact.faces.part_values import PartValues
 from ...contact.operators.pressure import Basis, joined_bases
 from ...contact.operators.rigid_motion import (
     RigidMode,
@@ -23,9 +25,7 @@ from ...contact.operators.rigid_motion import (
 )
 from ...contact.operators.traces import gap_trace
 from ...contact.search.contacts import Contacts
-from ...contact.search.face import gather_faces
 from ...contact.search.pairing import Pairing
-from ...contact.search.part_values import PartValues
 from ...contact.ties.joints import elastic_joints, glued_points
 from ...geometry.mesh.held import check_held, free_motions
 from ...geometry.mesh.mixed import AnyMesh

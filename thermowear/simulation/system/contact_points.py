@@ -9,10 +9,10 @@ import numpy as np
 
 from ...bulk.bodies import Bodies
 from ...bulk.kinematics import Kinematics
+from ...contact.faces.face import Face, Surface
+from ...contact.faces.projection import ray_intersections
 from ...contact.operators.pressure import Basis, jumps, pressure_basis
-from ...contact.search.face import Face, Surface
 from ...contact.search.pairing import Pairing, pair, paired
-from ...contact.search.projection import ray_intersections
 from ...contact.search.refinement import OVERHANG_TOLERANCE, SLIVER
 from ...contact.wear.worn_face import directions_between
 from ...errors import CaseError

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...contact.search.face import Face, Surface
+from ...contact.faces.face import Face, Surface
 from ...errors import CaseError
 from ...lagrange import lattice
 from ...laws.expressions import Region

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 import scipy
 
+from ...contact.faces.face import Surface
 from ...contact.search.contacts import Contacts
-from ...contact.search.face import Surface
 from ...contact.search.pairing import Pairing
 from ...contact.search.refinement import Rule
 from ...geometry.mesh.mixed import AnyMesh

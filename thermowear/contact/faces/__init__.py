@@ -1,0 +1,1 @@
+"""Contact faces: facets and interpolation on them, normals, projection, values by part."""

@@ -86,6 +86,16 @@ class AssemblyCase(Section):
         return located_material(self.geometry, self.bodies, part)
 
     @property
+    def glued(self) -> dict[str, set[str]]:
+        """Bodies glued to each body, directly or by others, with itself."""
+        groups = {body: {body} for body in self.geometry.bodies}
+        for contact in self.contacts.values():
+            if contact.tie and contact.between is not None:
+                one, other = (groups[self.geometry.body_of(face)] for face in contact.between)
+                groups |= dict.fromkeys(one | other, one | other)
+        return groups
+
+    @property
     def contact_tables(self) -> dict[str, InterfaceTable]:
         """Tables of the contacts that slide, by their path."""
         each = self.contacts.items()

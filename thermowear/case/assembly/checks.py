@@ -97,7 +97,7 @@ def _contacts(case: AssemblyCase) -> Iterator[Fault]:
     for body in geometry.bodies:
         if case.contacts and body not in reached:
             yield "contacts", f"the body {body!r} touches no other one"
-    if case.contacts and not case.contact_tables:
+    if case.contacts and not case.sliding:
         yield "contacts", "all are glued (tie = true); needs one that slides"
     yield from _thermal(case)
 
@@ -132,6 +132,7 @@ def _motions(case: AssemblyCase) -> Iterator[Fault]:
         if any(motion.center) and not about:
             text = "has no effect: only bodies in a section or in space rotate about it"
             yield f"motions.{name}.center", text
+    yield from _moving_together(case)
     if case.analysis.type == "steady" and not case.wear:
         yield "wear", "missing; a steady analysis needs the wear law of a body"
     heated = case.heat is not None and not case.heat.driven
@@ -139,11 +140,20 @@ def _motions(case: AssemblyCase) -> Iterator[Fault]:
         yield "motions", "missing; wear and friction heat need a sliding body: [motions.NAME]"
 
 
+def _moving_together(case: AssemblyCase) -> Iterator[Fault]:
+    """Glued bodies that slide have the same motion."""
+    slides = case.sliding_bodies | case.motions.keys()
+    for body, motion in case.motions.items():
+        for mate in sorted(case.glued[body] & slides):
+            twice = mate in case.motions and mate < body
+            if case.motions.get(mate) != motion and not twice:
+                yield f"motions.{mate}", f"must be that of {body}: glued bodies move as one"
+
+
 def _wear(case: AssemblyCase) -> Iterator[Fault]:
     """Wear laws fit the friction of the contacts of their body."""
-    sliding = [face for table in case.contact_tables.values() for face in table.between or ()]
     for name, table in case.wear.items():
-        if sliding and name not in map(case.geometry.body_of, sliding):
+        if case.sliding and name not in case.sliding_bodies:
             yield f"wear.{name}", "has no effect: all contacts of this body are glued"
         if table.spread == "track" and not _passes(case, name):
             text = "is for rings that pass a sector (geometry.rings) and for a turning drum"

@@ -98,8 +98,18 @@ class AssemblyCase(Section):
     @property
     def contact_tables(self) -> dict[str, InterfaceTable]:
         """Tables of the contacts that slide, by their path."""
-        each = self.contacts.items()
-        return {f"contacts.{name}": table for name, table in each if not table.tie}
+        return {f"contacts.{name}": table for name, table in self.sliding.items()}
+
+    @property
+    def sliding(self) -> dict[str, AssemblyContactTable]:
+        """Contacts that slide, by name."""
+        return {name: table for name, table in self.contacts.items() if not table.tie}
+
+    @property
+    def sliding_bodies(self) -> set[str]:
+        """Bodies with a contact that slides."""
+        faces = [face for table in self.sliding.values() for face in table.between or ()]
+        return set(map(self.geometry.body_of, faces))
 
     @property
     def histories(self) -> dict[str, TimeHistory]:

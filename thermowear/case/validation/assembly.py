@@ -43,7 +43,7 @@ def _note_default_per(case: AssemblyCase) -> None:
         body = name.partition(".materials.")[0]
         rubbing = [
             contact.nominal_friction
-            for contact in case.contact_tables.values()
+            for contact in case.sliding.values()
             if body in map(case.geometry.body_of, contact.between or ())
         ]
         note_default_per(name, law, max(rubbing, default=0.0))

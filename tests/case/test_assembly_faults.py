@@ -106,6 +106,27 @@ FAULTS = [
         "holders.left.tangential_force",
         "cannot be combined with",
     ),
+    (
+        RING,
+        COLD | {"contacts.left.friction": 0.0, "wear.left": {"rate": "1e-7/MPa*mu*p*v"}},
+        "contacts.left.friction",
+        "wear.left.rate depends on mu",
+    ),
+    (
+        RING,
+        {"contacts.left.pressure_degree": 4},
+        "contacts.left.pressure_degree",
+        "mesh.degree = 3",
+    ),
+    (
+        RING,
+        {"contacts.left.between": ["left_bottom", "disk_top", "right_top"]},
+        "contacts.left.between",
+        "must have at most 2 values",
+    ),
+    (GLUED, {"contacts.left.gap_conductance": "1 W/(m^2 K)"}, "contacts.left.gap_conductance", ""),
+    (GLUED, {"contacts.left.pressure_degree": 1}, "contacts.left.pressure_degree", "tie"),
+    (GLUED, {"contacts.left.transverse_friction": 0.1}, "contacts.left.transverse_friction", "tie"),
 ]
 
 

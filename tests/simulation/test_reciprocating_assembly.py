@@ -163,8 +163,11 @@ def test_it_does_not_matter_which_bodies_move():
 
 
 def test_a_contact_at_rest_and_a_stroke_too_long():
-    """requirement: bodies that move alike, and a punch that leaves the strip, are refused."""
+    """requirement: bodies at rest or alike, and a punch that leaves the strip, are refused."""
     both = {"motions": {"upper": SLIDING, "strip": SLIDING}}
+    alone = {"motions": {"upper": SLIDING}}
+    with pytest.raises(tw.CaseError, match=r"contacts\.lower: its bodies do not slide"):
+        tw.run(tw.load(changed(CASE, alone)))
     with pytest.raises(tw.CaseError, match=r"contacts\.upper: its bodies do not slide"):
         computed(both)
     long = {"motions.strip.amplitude": "6 mm"}

@@ -35,6 +35,17 @@ def test_pads_that_turn(pad):
     assert bodies["disk"]["friction_torque_Nm"] == pytest.approx(-both, rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.parametrize("state", ["unworn", "after running-in"])
+def test_a_pad_that_turns_with_the_disk(state):
+    """requirement: no friction and no wear where nothing slides."""
+    moved = {"motions.left": {"angular_velocity": f"{SPEED} rad/s"}}
+    contacts = tw.run(tw.load(changed(PADS.tables(state), moved))).summary["contacts"]
+    left, right = contacts["left"], contacts["right"]
+    assert left["normal_force_N"] == pytest.approx(FORCE, rel=1e-9)
+    assert left["friction_torque_Nm"] == left["friction_power_W"] == left["wear_volume_1_m3"] == 0.0
+    assert right["friction_power_W"] > 0.0
+
+
 def test_a_whole_ring_is_cooled_all_round():
     """requirement: a disk that conducts well loses the power through the rim of its whole ring."""
     changes = {

@@ -39,6 +39,19 @@ def test_wear_unloads_a_pad_that_does_not_follow(right):
     assert np.ptp(faces.shape[result.contacts["left"]]) > 0.0
 
 
+def test_heat_through_the_open_gap():
+    """requirement: h times the jump of the temperature at this contact, none at the pressed one."""
+    h = 50.0
+    case = changed(tables(right=FIXED), {"contacts.right.gap_conductance": f"{h} W/(m^2 K)"})
+    result = tw.run(tw.load(case))
+    own, at = result.contacts["right"], result.interface
+    through = h * (at.temperature_2 - at.temperature_1)[own]
+    np.testing.assert_allclose(at.heat_flux_1[own], through, rtol=1e-9)
+    heat = result.summary["bodies"]["right"]["contact_heat_W"]
+    assert heat == pytest.approx(at.weight[own] @ through, rel=1e-9)
+    assert heat > 1.0
+
+
 def test_all_of_a_force_borne_next_to_its_contact():
     """requirement: a reaction on the disk leaves nothing for the pad on its other side."""
     case = Brake("floating", 9.0, heated=True, elements=4).tables("steady")

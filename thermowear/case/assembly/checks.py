@@ -85,7 +85,10 @@ def _contacts(case: AssemblyCase) -> Iterator[Fault]:
         yield "contacts", "missing; needs the faces that touch: [contacts.NAME] between = [...]"
     for name, contact in case.contacts.items():
         if not _NAME.fullmatch(name) or _AT in name or _is_number(name):
-            yield f"contacts.{name}", "the name must consist of letters, digits, - and _"
+            yield (
+                f"contacts.{name}",
+                "the name must consist of letters, digits, - and _, and be no number",
+            )
         one, other = contact.between or ("", "")
         if geometry.body_of(one) == geometry.body_of(other):
             yield f"contacts.{name}.between", "both faces belong to the same body"
@@ -163,11 +166,15 @@ def _wear(case: AssemblyCase) -> Iterator[Fault]:
         for joint, contact in case.contacts.items():
             own = name in map(case.geometry.body_of, contact.between or ())
             per_friction = law.rate is None and law.per == "friction-stress"
-            if own and per_friction and not contact.tie and contact.nominal_friction == 0.0:
+            if not own or contact.tie or contact.nominal_friction > 0.0:
+                continue
+            if per_friction:
                 yield (
                     f"contacts.{joint}.friction",
                     f'is 0; wear.{path} is per friction stress (write per = "pressure" instead)',
                 )
+            elif law.rate is not None and "mu" in law.variables:
+                yield f"contacts.{joint}.friction", f"is 0; wear.{path}.rate depends on mu"
 
 
 def _passes(case: AssemblyCase, body: str) -> bool:

@@ -107,6 +107,17 @@ def _sliding(case: AssemblyCase) -> Iterator[Fault]:
             )
 
 
+def _pressure_degrees(case: AssemblyCase) -> Iterator[Fault]:
+    """The pressure has at most the degree of the displacement."""
+    for path, contact in case.contact_tables.items():
+        own = contact.pressure_degree
+        if isinstance(own, int) and own > case.mesh.degree:
+            yield (
+                f"{path}.pressure_degree",
+                f"found {own}; at most mesh.degree = {case.mesh.degree}",
+            )
+
+
 def _carried(case: AssemblyCase) -> Iterator[Fault]:
     """Bodies that carry heat along need their heat capacity."""
     if case.heat is None or case.heat.advection != "resolved":
@@ -129,6 +140,7 @@ _CHECKS = (
     varying,
     layer_wear,
     part_wear,
+    _pressure_degrees,
     _carried,
     _heat,
     cyclic_assembly.unsupported,

@@ -37,7 +37,6 @@ FAULTS = [
     (RING, {"holders.left.tangential_force": "1 N"}, "holders.left.tangential_force", "no effect"),
     (RING, {"holders.left.pivot": ["1 m", "0 m"]}, "holders.left.pivot", "no effect"),
     (RING, {"holders.left.direction": [0.5, -1]}, "holders.left.direction", "along the axis"),
-    (RING, {"bodies.disk.rollers": "disk_outside"}, "holders.hub.free", "bodies.disk.rollers"),
     (RING, {"motions.disk.center": ["1 m", "0 m"]}, "motions.disk.center", "no effect"),
     (RING, COLD | {"contacts.left.conductance": "1 W/(m^2 K)"}, "contacts.left.conductance", "no"),
     (RING, COLD | {"contacts.left.partition": 0.5}, "contacts.left.partition", "no effect"),

@@ -4,6 +4,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.errors import CaseNote
+from thermowear.simulation.from_case import model_of
 from thermowear.verification.cases.assembly.pad_disk_pad import Brake
 
 from .starter import GONE, changed
@@ -141,8 +142,11 @@ def test_faults(tables, changes, path, text):
 
 @pytest.mark.parametrize("tables", [RING, SECTION, GLUED])
 def test_without_them(tables):
-    """requirement: the cases are valid without the faults."""
-    tw.load(tables)
+    """requirement: the cases are valid without the faults, and complete."""
+    case = tw.load(tables)
+    assert case.bodies.keys() == tables["bodies"].keys()
+    assert set(case.sliding_bodies) <= set(case.geometry.bodies)
+    assert all(contact.between for contact in case.contacts.values())
 
 
 def test_planes_that_a_holder_would_move():
@@ -156,7 +160,10 @@ def test_planes_that_a_holder_would_move():
 
 def test_supports_on_a_held_surface_move_with_it():
     """requirement: a back on rollers, held along the axis only, is no contradiction."""
-    tw.load(changed(RING, {"bodies.left.rollers": "left_top"}))
+    case = tw.load(changed(RING, {"bodies.left.rollers": "left_top"}))
+    left = next(body for body in model_of(case).bodies if body.name == "left")
+    assert left.rollers == ("left_top",)
+    assert "left_top" not in left.fixed
 
 
 def test_default_of_wear_coefficients():

@@ -209,7 +209,7 @@ def _iterate(conditions: _Conditions) -> tuple[np.ndarray, np.ndarray, bool] | N
     pressing = pressure / pressure.max()
     touching = pressing > separation / newton.rate_scale
     # where nothing approaches, as between fixed bodies, both p and s are rounding
-    touching &= np.maximum(pressing, approach / approach.max()) > AT_REST
+    touching &= (pressing > AT_REST) | (approach > AT_REST * np.abs(approach).max())
     touching &= conditions.normal_modes.any(axis=1)
     return np.where(touching, pressure, 0.0), multipliers, bool(np.linalg.det(newton.tangent) > 0)
 

@@ -162,8 +162,8 @@ def _in_space(case: Case) -> Iterator[Fault]:
         yield "contact.transverse_friction", "not supported in 3d models"
     elif case.contact.pressure_degree == "lobatto":
         yield "contact.pressure_degree", "not supported in 3d models"
-    if case.analysis.cyclic:
-        yield "analysis.type", f"{case.analysis.type!r} is not supported in 3d models"
+    if case.analysis.type == "reciprocating":
+        yield "analysis.type", "'reciprocating' is not supported in 3d models"
 
 
 def _moving_mesh(case: Case) -> Iterator[Fault]:

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import ComputationError
-from ..operators.tangential import FrictionalContact
+from ..operators.frictional_contact import FrictionalContact
 from ..solvers.signorini import solve_contact
 from ..wear.implicit_step import newton_with_wear
 from .coulomb import CoulombProblem, CoulombSolution
@@ -115,10 +115,8 @@ def _state_after(contact, state, solution: CoulombSolution, free, fixed) -> Stic
     x = contact.stack(solution.pressure, solution.shear)
     motion = fixed.copy()
     motion[free] = solution.motion
-    slip = contact.split(contact.compliance @ x - contact.modes @ motion)[1]
-    point_slip = contact.point_slip(x, motion)
-    traction = contact.basis @ solution.shear
-    lost = -(traction * (point_slip - state.point_slip)).sum(axis=1)
+    slip, point_slip = contact.weak_slip(x, motion), contact.point_slip(x, motion)
+    lost = contact.lost(solution.shear, slip - state.slip, point_slip - state.point_slip)
     closed = np.where(solution.sticking, Status.STICK, Status.SLIP)
     return replace(
         state,

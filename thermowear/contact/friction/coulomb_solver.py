@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import ComputationError
 from ..solvers.lemke import lemke
 from ..solvers.signorini import saddle_point, solve_contact
-from .coulomb import CoulombProblem, CoulombSolution, jacobian, residual, scales, violated
+from .coulomb import CoulombProblem, CoulombSolution, newton_step, residual, scales, violated
 
 _MAX_ITERATIONS = 30
 _TOLERANCE = 1e-12
@@ -81,9 +81,8 @@ def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> Coul
             pressure, shear, sticking = problem.projection(unknowns)
             motion = unknowns[len(problem.offset) :]
             return CoulombSolution(pressure, shear, motion, sticking, iteration)
-        try:
-            step = np.linalg.solve(jacobian(problem, unknowns), -error)
-        except np.linalg.LinAlgError:
+        step = newton_step(problem, unknowns, error)
+        if step is None:
             return None
         if damped:
             step = _damped(problem, unknowns, step, float(np.linalg.norm(error)))

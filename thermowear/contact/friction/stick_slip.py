@@ -17,7 +17,8 @@ from ..operators.frictional_contact import FrictionalContact
 from ..solvers.signorini import solve_contact
 from ..wear.implicit_step import newton_with_wear
 from .coulomb import CoulombProblem, CoulombSolution
-from .coulomb_solver import FullSliding, check_gross_slip, solve_by_newton, solve_with_fallbacks
+from .coulomb_solver import solve_by_newton, solve_with_fallbacks
+from .gross_slip import FullSliding, check_gross_slip
 from .slip_wear import IncrementWear, SlipWear
 from .stick_slip_state import Loads, Status, StickSlipState, unloaded
 
@@ -104,8 +105,9 @@ def _increment(contact, friction, state, guess, loads: Loads, compliance, gap) -
     solution = solve_by_newton(problem, closed, near)
     if solution is None:
         holders = [held.holder for held, is_free in zip(contact.held, free, strict=True) if is_free]
-        for mode in np.flatnonzero(slides):
-            check_gross_slip(problem, presses, mode, holders[mode])
+        for holder in dict.fromkeys(holders[mode] for mode in np.flatnonzero(slides)):
+            own = [k for k in np.flatnonzero(slides) if holders[k] == holder]
+            check_gross_slip(problem, presses, np.array(own), holder)
         solution = solve_with_fallbacks(problem, closed)
     return _state_after(contact, state, solution, free, fixed)
 

@@ -21,7 +21,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ...contact.friction.coulomb_solver import FullSliding
+from ...contact.friction.gross_slip import FullSliding
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...errors import ComputationError
 from .load_path import Increment, Jump, RestartPoint

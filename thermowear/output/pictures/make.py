@@ -30,6 +30,7 @@ _OVER_A_SURFACE: dict[str, Callable[..., None]] = {
     "interface": maps.draw_interface_maps,
     "wear": maps.draw_wear_maps,
     "coating": maps.draw_coating_maps,
+    "friction": maps.draw_friction_maps,
     "mode": draw_modes,
 }
 _OF_THE_INTERFACE = ("wear", "coating")

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.tri import Triangulation
 
 from .. import tables
@@ -17,6 +18,11 @@ from .panels import MAP_STYLE, color_map, label_coordinates, panels
 
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
 _LINES = 8
+_ARROWS = 22
+"""Number of arrows along each side of a face."""
+_SMALL = 0.02
+"""Part of the largest value from which arrows are drawn."""
+_STATUS_COLORS = ListedColormap(["white", "tab:blue", "tab:orange"])
 _SPACES = ("figure.constrained_layout.wspace", "figure.constrained_layout.hspace")
 _STYLE = MAP_STYLE | dict.fromkeys(_SPACES, 0.06)
 _LARGEST_ANGLE = 100.0
@@ -59,18 +65,61 @@ def draw_coating_maps(folder: Path, contact: str = "") -> None:
         _draw(folder / picture("coating", contact), data, names, f"coating after {end:.4g} s")
 
 
+def draw_friction_maps(folder: Path, contact: str = "") -> None:
+    """Draw ``friction.png``: shear with its direction, slip, dissipated energy and status."""
+    data = tables.read(folder / name_at("friction", None, contact))
+    names = [name for name in ("shear", "slip", "dissipated") if np.any(data[name])]
+    if "shear_x" not in data or not names:
+        return
+    triangles = triangulated(data.drawn("x"), data.drawn("y"))
+    path = folder / picture("friction", contact)
+    with _maps(path, triangles, len(names) + 1) as (_, axes):
+        for axis, name in zip(axes.flat, names, strict=False):
+            _map(axis, triangles, data, name)
+            if name in ("shear", "slip"):
+                _arrows(axis, triangles, data, name)
+        _statuses(axes.flat[len(names)], triangles, data)
+
+
+def _arrows(axis: Axes, triangles: Triangulation, data: tables.TableColumns, name: str) -> None:
+    """Draw the directions of shear or slip on a grid of points, where it is not small."""
+    x, y = (np.linspace(v.min(), v.max(), _ARROWS + 1) for v in (triangles.x, triangles.y))
+    points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    places = np.column_stack([triangles.x, triangles.y])
+    at = np.unique(np.linalg.norm(places - points[:, None], axis=2).argmin(axis=1))
+    size = data[name][at]
+    at, size = at[size > _SMALL * data[name].max()], size[size > _SMALL * data[name].max()]
+    along = (data[f"{name}_{axis_}"][at] / size for axis_ in "xy")
+    options = {"scale": 1.3 * _ARROWS, "width": 0.004, "pivot": "mid", "color": "black"}
+    axis.quiver(triangles.x[at], triangles.y[at], *along, **options)
+
+
+def _statuses(axis: Axes, triangles: Triangulation, data: tables.TableColumns) -> None:
+    """Colour open, sticking and slipping parts of a face."""
+    middle = data["status"][triangles.triangles].max(axis=1)
+    colored = axis.tripcolor(triangles, middle, cmap=_STATUS_COLORS, vmin=-0.5, vmax=2.5)
+    bar = axis.figure.colorbar(colored, ax=axis, ticks=(0, 1, 2), shrink=0.9)
+    bar.ax.set_yticklabels(("open", "stick", "slip"))
+    label_coordinates(axis, data)
+
+
 def _draw(path: Path, data: tables.TableColumns, names: list[str], title: str = "") -> None:
     """Draw a map of each quantity, two per row."""
     triangles = triangulated(data.drawn("x"), data.drawn("y"))
-    ratio = np.clip(np.ptp(triangles.y) / np.ptp(triangles.x), 0.3, 2.5)
-    size = (_LONGER_SIDE / max(1.0, ratio) + 2.2, _LONGER_SIDE * min(1.0, ratio) + 0.8)
-    margin = (0.0, 0.3 if title else 0.0)
-    options: dict[str, Any] = {"margin": margin, "style": _STYLE, "crop": True}
-    with panels(path, len(names), 2, size, **options) as (figure, axes):
+    with _maps(path, triangles, len(names), title) as (figure, axes):
         for axis, name in zip(axes.flat, names, strict=False):
             _map(axis, triangles, data, name)
         if title:
             figure.suptitle(title, fontsize=11)
+
+
+def _maps(path: Path, triangles: Triangulation, count: int, title: str = ""):
+    """Panels for maps of a face, two per row."""
+    ratio = np.clip(np.ptp(triangles.y) / np.ptp(triangles.x), 0.3, 2.5)
+    size = (_LONGER_SIDE / max(1.0, ratio) + 2.2, _LONGER_SIDE * min(1.0, ratio) + 0.8)
+    margin = (0.0, 0.3 if title else 0.0)
+    options: dict[str, Any] = {"margin": margin, "style": _STYLE, "crop": True}
+    return panels(path, count, 2, size, **options)
 
 
 def _map(axis: Axes, triangles: Triangulation, data: tables.TableColumns, name: str) -> None:

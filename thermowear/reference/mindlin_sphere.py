@@ -1,14 +1,14 @@
-"""Spheres under tangential force and twist: partial slip of a Hertzian contact (Cattaneo, Mindlin).
+"""Sphere under tangential force or twist: partial slip of a Hertzian contact (Cattaneo, Mindlin).
 
-Two bodies with the moduli ``G_i, ν_i`` touch in a circle of the radius a under the force P, with the
-Hertzian pressure ``p = p_0 sqrt(1 - r²/a²)``. A tangential force Q displaces their far points by
+Two bodies with the moduli ``G_i, ν_i`` touch in a circle of the radius a under the force P, with
+the pressure ``p = p_0 sqrt(1 - r²/a²)`` (Hertz). A tangential force Q displaces their far points by
 
     δ = K (1 - (1 - Q/μP)^(2/3)),     K = 3 μ P S / (16 a),     S = (2 - ν_1)/G_1 + (2 - ν_2)/G_2,
 
-and slips outside the circle ``c = a (1 - Q/μP)^(1/3)``; the shear is ``μ p`` less that of a Hertzian
-pressure on that circle (Johnson, Contact Mechanics, 1985, section 7.2). Slip across the force, which
-is neglected, vanishes for ν = 0. For a force that has turned back from Q, Masing's rule holds: changes
-are those of a first loading by half the force, twice.
+and slips outside the circle ``c = a (1 - Q/μP)^(1/3)``; the shear is ``μ p`` less that of a
+Hertzian pressure on that circle (Johnson, Contact Mechanics, 1985, section 7.2). Slip across the
+force, which is neglected, vanishes for ν = 0. For a force that has turned back from Q, Masing's
+rule holds: changes are those of a first loading by half the force, twice.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ class MindlinSphere:
     radius : float
         Relative radius of curvature [m].
     bodies : tuple of tuple of float
-        Young's modulus [Pa] and Poisson's ratio of both bodies, such that pressure does not slip the
-        faces.
+        Young's modulus [Pa] and Poisson's ratio of both bodies, such that pressure does not slip
+        the faces.
     friction : float
         Coefficient of friction μ.
     """
@@ -46,7 +46,8 @@ class MindlinSphere:
     @property
     def contact_radius(self) -> float:
         """Radius a [m]."""
-        return float((3 * self.force * self.radius / (4 * contact_modulus(*self.bodies))) ** (1 / 3))
+        modulus = contact_modulus(*self.bodies)
+        return float((3 * self.force * self.radius / (4 * modulus)) ** (1 / 3))
 
     @property
     def peak(self) -> float:

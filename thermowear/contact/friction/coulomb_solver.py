@@ -69,6 +69,7 @@ def _verified_from(
     return None
 
 
+@np.errstate(over="ignore", invalid="ignore")  # iterates that diverge
 def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> CoulombSolution | None:
     for iteration in range(_MAX_ITERATIONS + 1):
         error = residual(problem, unknowns)

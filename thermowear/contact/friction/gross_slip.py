@@ -28,8 +28,8 @@ def check_gross_slip(
 
     In gross slip all contacts slide along one combination v of the motions under tangential forces,
     and the shear is a multiple of the pressure, which then solves a Signorini problem. By the upper
-    bound theorem, forces with ``F·v > D(v) = λ·(R_n v) + Σ mu λ |R_t v|`` for any v are not carried;
-    v makes the ratio ``D/F·v`` smallest. Contacts that no motion slides are taken as frictionless.
+    bound theorem, forces with ``F·v > D(v) = λ·(R_n v) + Σ mu λ |R_t v|`` for any v are not
+    carried; v makes ``D/F·v`` smallest. Contacts that no motion slides are taken as frictionless.
 
     Parameters
     ----------

@@ -149,7 +149,8 @@ class SurfaceContact(FrictionalContact):
         return self.basis @ (self.weak_slip(stacked, motion) / self.areas[:, None])
 
     def lost(self, shear: np.ndarray, slip: np.ndarray, point_slip: np.ndarray) -> np.ndarray:
-        return self.basis @ (-(shear * slip).sum(axis=1) / self.areas)
+        worked = np.maximum(-(shear * slip).sum(axis=1), 0.0)  # rounding where it sticks
+        return self.basis @ (worked / self.areas)
 
 
 def frictional_contact(

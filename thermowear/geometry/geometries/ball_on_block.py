@@ -1,7 +1,7 @@
 """Sphere on a round block, in space.
 
-The contact lies at the origin, the sphere above. Its lower half is meshed and held on the flat at the
-height of its centre. Both bodies consist of curved tetrahedra made by gmsh.
+The contact lies at the origin, the sphere above. Its lower half is meshed and held on the flat at
+the height of its centre. Both bodies consist of curved tetrahedra made by gmsh.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ...case.values.section import Switch
 from ...case.values.units import Length
 from ...errors import CaseError
 from ..mesh.tagged import TaggedMesh
-from ..meshing.cells import Claim, both, every, tagged_bodies
+from ..meshing.cells import Claim, MeshedBody, both, every, tagged_bodies
 from ..meshing.tetrahedra import RoundZone, mesh_solids
 
 _ORDER = 2
@@ -103,8 +103,8 @@ class BallOnBlock(Geometry):
         most = _WIDEST * min(self.radius, self.block_radius) / _FACE
         if not least <= found <= most:
             raise CaseError(
-                f"geometry.radius: the contact is expected to have a radius of {found:.3g} m; it can "
-                f"be meshed from {least:.3g} m to {most:.3g} m"
+                f"geometry.radius: the contact is expected to have a radius of {found:.3g} m; "
+                f"it can be meshed from {least:.3g} m to {most:.3g} m"
             )
 
     def build(self, mesh, zone=None) -> TaggedMesh:
@@ -115,7 +115,7 @@ class BallOnBlock(Geometry):
         zones = {body: self._zone(body, mesh, zone[1]) for body in self.bodies}
         alike = mesh.face("sphere") == mesh.face("block")
         groups = [zones] if alike else [{name: each} for name, each in zones.items()]
-        bodies = {}
+        bodies: dict[str, MeshedBody] = {}
         for group in groups:
             bodies |= mesh_solids(drawn.drawing(tuple(group)), group, order, self.radius)
         bodies["sphere"] = replace(bodies["sphere"], points=drawn.rounded(bodies["sphere"].points))
@@ -138,8 +138,8 @@ class BallOnBlock(Geometry):
 class _Drawing:
     """Drawing of both bodies for gmsh, and the names of their surfaces.
 
-    The sphere is drawn with an end that is flat within the contact face and rounded afterwards: both
-    faces can have the same triangles.
+    The sphere is drawn with an end that is flat within the contact face and rounded afterwards:
+    both faces can have the same triangles.
 
     Parameters
     ----------

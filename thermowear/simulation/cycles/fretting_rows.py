@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ...contact.friction.stick_slip_state import Status
 from ...contact.operators.tangential import forwards, tangents
 from ...laws.motions import spatial
 from ...results import (
@@ -63,9 +64,16 @@ class FrettingState:
 
     @cached_property
     def sticking(self) -> np.ndarray:
-        """Mask of points with shear below the friction limit, shape (n,)."""
-        limit = self.system.friction * self.pressure
-        return np.linalg.norm(self.shear, axis=1) < _SLIDES * limit
+        """Mask of points with shear below the friction limit, shape (n,).
+
+        In space most of the coefficients at the point stuck in the last increment: the shear between
+        coefficients that slip in different directions is below the limit, too.
+        """
+        if self.in_space:
+            status, basis = self.increment.state.status, self.system.basis
+            stick, slip = (basis @ (status == each) for each in (Status.STICK, Status.SLIP))
+            return (stick > slip) & (self.pressure > 0)
+        return np.abs(self.shear[:, 0]) < _SLIDES * self.system.friction * self.pressure
 
     @cached_property
     def depths(self) -> np.ndarray:

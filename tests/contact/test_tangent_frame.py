@@ -11,8 +11,8 @@ DOWN = np.array([0.0, 0.0, -1.0])
 def cap(steepest, count=40):
     """Normals of a spherical cap that looks down, up to an angle from the pole."""
     angle, turn = np.meshgrid(np.linspace(0, steepest, count), np.linspace(0, 2 * np.pi, count))
-    across = np.sin(angle)
-    return np.stack([across * np.cos(turn), across * np.sin(turn), -np.cos(angle)], -1).reshape(-1, 3)
+    x, y = np.sin(angle) * np.cos(turn), np.sin(angle) * np.sin(turn)
+    return np.stack([x, y, -np.cos(angle)], axis=-1).reshape(-1, 3)
 
 
 def test_axes_below_a_body_are_x_and_y():

@@ -66,8 +66,8 @@ class FrettingState:
     def sticking(self) -> np.ndarray:
         """Mask of points with shear below the friction limit, shape (n,).
 
-        In space most of the coefficients at the point stuck in the last increment: the shear between
-        coefficients that slip in different directions is below the limit, too.
+        In space those where more coefficients have stuck than slipped in the last increment: the
+        shear between coefficients that slip in different directions is below the limit, too.
         """
         if self.in_space:
             status, basis = self.increment.state.status, self.system.basis

@@ -32,7 +32,7 @@ DEPTH = "k p times the slip of the closed form"
 
 
 def mindlin_sphere() -> Iterator[Check]:
-    """Stick circle, compliance and energy of a cycle; twist; a force that is turned by 37 degrees."""
+    """Stick circle, compliance and energy of a cycle; force turned by 37 degrees; twist."""
     forces = (0.0, PUSH, -PUSH, PUSH)
     history = {"tangential_force": [f"{f / 2!r} N" for f in forces]}
     _, friction = rubbed(_geometry(), history, elements=20)

@@ -64,7 +64,7 @@ class WornProfile:
         return self.interpolation(slip).T * self.areas / self.areas[:, None]
 
 
-class Profile(Protocol):
+class SlidingProfile(Protocol):
     """Worn profile of a body at one interface, `WornProfile` or `worn_surface.WornSurface`."""
 
     def interpolation(self, slip: Any) -> np.ndarray:
@@ -80,11 +80,11 @@ class WornProfiles:
 
     Attributes
     ----------
-    each : tuple of Profile
+    each : tuple of SlidingProfile
         Profile at each interface.
     """
 
-    each: tuple[Profile, ...]
+    each: tuple[SlidingProfile, ...]
 
     def interpolation(self, travel: np.ndarray) -> np.ndarray:
         """Matrix L for the slips of the interfaces, see `FrictionalContact.travel`, (m, m)."""

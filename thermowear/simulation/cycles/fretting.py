@@ -16,7 +16,6 @@ from ..runtime.observer import AnyRow, Observer
 from ..system.system import System
 from .fretting_path import FrettingPath
 from .fretting_rows import (
-    FrettingState,
     contact_rows,
     contact_summary,
     cycle_row,
@@ -27,6 +26,7 @@ from .fretting_rows import (
     tangential_rows,
     tangential_summary,
 )
+from .fretting_state import FrettingState
 from .load_path import Increment
 
 

@@ -52,12 +52,12 @@ def test_force_and_torque_share_the_friction():
     """requirement: together they are carried up to a limit surface: less than each alone, and more
     than their sum (the limit surface is convex and smooth).
     """
-    both = MU * PRESS * np.array([1.0, 0.0, 2.0])
-    assert 1 / 2 < carried(both) < 0.9
+    both = MU * PRESS * np.array([1.0, 0.0, 0.8])
+    assert 1 / (1 + 0.8 / 2) < carried(both) < 0.95
     # the ring turns about a pole at a distance d: minimum over d of ∫|r - d| mu p / (F·v)
     angle, d = np.linspace(0, 2 * np.pi, 4001), np.linspace(0.01, 40, 4000)
     power = np.array([np.hypot(2 * np.cos(angle), 2 * np.sin(angle) - s).mean() for s in d])
-    assert carried(both) == pytest.approx((power / (2.0 + d)).min(), rel=1e-3)
+    assert carried(both) == pytest.approx((power / (0.8 + d)).min(), rel=1e-3)
 
 
 def test_nothing_asked_is_carried():

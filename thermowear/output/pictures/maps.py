@@ -98,6 +98,9 @@ def _statuses(axis: Axes, triangles: Triangulation, data: tables.TableColumns) -
     """Colour open, sticking and slipping parts of a face."""
     middle = data["status"][triangles.triangles].max(axis=1)
     colored = axis.tripcolor(triangles, middle, cmap=_STATUS_COLORS, vmin=-0.5, vmax=2.5)
+    axis.set(
+        xlim=(triangles.x.min(), triangles.x.max()), ylim=(triangles.y.min(), triangles.y.max())
+    )
     bar = axis.figure.colorbar(colored, ax=axis, ticks=(0, 1, 2), shrink=0.9)
     bar.ax.set_yticklabels(("open", "stick", "slip"))
     label_coordinates(axis, data)

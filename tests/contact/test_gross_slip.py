@@ -1,10 +1,14 @@
 """Gross slip under forces in two directions and a torque."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
 from thermowear.contact.friction.coulomb import CoulombProblem
 from thermowear.contact.friction.gross_slip import FullSliding, check_gross_slip
+from thermowear.contact.operators.frictional_contact import HeldMotion
+from thermowear.laws.motions import rotation, translation
 
 M, MU, PRESS = 400, 0.3, 1000.0
 PRESSES = np.array([True, False, False, False])
@@ -26,11 +30,17 @@ def ring(force, slides=SLIDES):
     return problem, PRESSES[every], np.arange(1, len(every))
 
 
+def held(own):
+    """Motions for the messages."""
+    moved = translation((1, 0, 0)), translation((0, 1, 0)), rotation((0, 0, 1), (0, 0, 0))
+    return [HeldMotion(moved[k - 1], holder="it") for k in own]
+
+
 def carried(force, slides=SLIDES):
     """Part of forces beyond the limit that friction carries, as the message says."""
     problem, presses, own = ring([1e3 * f for f in force], slides)
     with pytest.raises(FullSliding) as refused:
-        check_gross_slip(problem, presses, own, "it")
+        check_gross_slip(problem, presses, own, held(own))
     return 1e3 * float(str(refused.value).partition("carries ")[2].split()[0])
 
 
@@ -40,7 +50,8 @@ def test_friction_opposes_the_force_in_any_direction(angle):
     force = MU * PRESS * np.array([np.cos(angle), np.sin(angle), 0.0])
     assert carried(force) == pytest.approx(1.0, rel=1e-5)
     assert carried(force[:2], SLIDES[:2]) == pytest.approx(1.0, rel=1e-5)
-    check_gross_slip(*ring(0.999 * force), "it")
+    problem, presses, own = ring(0.999 * force)
+    check_gross_slip(problem, presses, own, held(own))
 
 
 def test_torque():
@@ -62,4 +73,24 @@ def test_force_and_torque_share_the_friction():
 
 def test_nothing_asked_is_carried():
     """requirement: no force, no sliding."""
-    check_gross_slip(*ring((0.0, 0.0, 0.0)), "it")
+    problem, presses, own = ring((0.0, 0.0, 0.0))
+    check_gross_slip(problem, presses, own, held(own))
+
+
+def test_without_friction_nothing_is_carried():
+    """requirement: refused with the load and its unit, also before the load grows."""
+    for slides, text in (
+        (SLIDES[:1], "carries 0 N, and the tangential force is 0 N"),
+        (SLIDES, "carries 0 times the tangential forces and torques"),
+    ):
+        problem, presses, own = ring((0.0, 0.0, 0.0)[: len(slides)], slides)
+        problem = dataclasses.replace(problem, friction=np.zeros(M))
+        with pytest.raises(FullSliding, match=text):
+            check_gross_slip(problem, presses, own, held(own))
+
+
+def test_a_torque_has_its_own_unit():
+    """requirement: N m, and a twist as the remedy."""
+    problem, presses, own = ring((0.0, 0.0, 1e4))
+    with pytest.raises(FullSliding, match=r"carries 600 N m, and the torque is 10000 N m\. Give a"):
+        check_gross_slip(problem, presses, own[2:], held(own)[2:])

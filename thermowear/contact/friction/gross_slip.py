@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -9,6 +10,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from ...errors import ComputationError
+from ..operators.frictional_contact import HeldMotion
 from ..solvers.signorini import solve_contact
 from .coulomb import CoulombProblem
 
@@ -22,7 +24,10 @@ class FullSliding(ComputationError):
 
 
 def check_gross_slip(
-    problem: CoulombProblem, presses: np.ndarray, slides: np.ndarray, holder: str
+    problem: CoulombProblem,
+    presses: np.ndarray,
+    slides: np.ndarray,
+    held: Sequence[HeldMotion],
 ) -> None:
     """Raise if the contacts carry less than the tangential forces when they slip.
 
@@ -38,8 +43,8 @@ def check_gross_slip(
         True for the motions along load directions, which are free in gross slip.
     slides : ndarray of int
         Motions of a holder under tangential forces.
-    holder : str
-        Subject of the message.
+    held : sequence of HeldMotion
+        These motions, for the message.
 
     Raises
     ------
@@ -47,6 +52,8 @@ def check_gross_slip(
     """
     sliding = _Sliding(problem, presses, slides)
     asked, slip = sliding.asked, sliding.first_slip
+    if not problem.friction.any():
+        raise FullSliding(_message(asked, 0.0, 1.0, held))
     if len(slides) > 1 and not asked.any():
         return
     for _ in range(_SWEEPS if len(slides) > 1 else 1):
@@ -59,7 +66,7 @@ def check_gross_slip(
         slip = sliding.mechanism(λ, slip)
     carried = sliding.power(λ, slip)
     if asked @ slip >= (1 - _MARGIN) * carried:
-        raise FullSliding(_message(asked, carried, asked @ slip, holder))
+        raise FullSliding(_message(asked, carried, asked @ slip, held))
 
 
 @dataclass(frozen=True)
@@ -136,15 +143,18 @@ class _Sliding:
         return start + turn @ found.x
 
 
-def _message(asked: np.ndarray, carried: float, power: float, holder: str) -> str:
-    remedy = "Give a smaller force, or a tangential displacement"
-    if len(asked) == 1:
+def _message(asked: np.ndarray, carried: float, power: float, held: Sequence[HeldMotion]) -> str:
+    remedy, holder = "Give a smaller force, or a tangential displacement", held[0].holder
+    if len(asked) > 1:
+        loads = ", ".join(f"{load:.6g}" for load in asked)
         return (
-            f"{holder} slides; friction carries {abs(carried):.6g} N, and the tangential force "
-            f"is {asked[0]:.6g} N. {remedy}"
+            f"{holder} slides; friction carries {carried / power:.6g} times the tangential forces "
+            f"and torques ({loads}; N, N m). {remedy}"
         )
-    loads = ", ".join(f"{load:.6g}" for load in asked)
+    load, unit = "tangential force", "N"
+    if held[0].motion.rotation.any():
+        load, unit, remedy = "torque", "N m", "Give a smaller torque, or a twist"
     return (
-        f"{holder} slides; friction carries {carried / power:.6g} times the tangential forces and "
-        f"torques ({loads}; N, N m). {remedy}"
+        f"{holder} slides; friction carries {abs(carried):.6g} {unit}, and the {load} "
+        f"is {asked[0]:.6g} {unit}. {remedy}"
     )

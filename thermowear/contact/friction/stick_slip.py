@@ -103,11 +103,11 @@ def _increment(contact, friction, state, guess, loads: Loads, compliance, gap) -
     if guess is not state:
         near = np.append(contact.stack(guess.pressure, guess.shear), guess.motion[free])
     solution = solve_by_newton(problem, closed, near)
-    if solution is None:
-        holders = [held.holder for held, is_free in zip(contact.held, free, strict=True) if is_free]
-        for holder in dict.fromkeys(holders[mode] for mode in np.flatnonzero(slides)):
-            own = [k for k in np.flatnonzero(slides) if holders[k] == holder]
-            check_gross_slip(problem, presses, np.array(own), holder)
+    if solution is None or (slides.any() and not friction.any()):
+        held = [each for each, is_free in zip(contact.held, free, strict=True) if is_free]
+        for holder in dict.fromkeys(held[k].holder for k in np.flatnonzero(slides)):
+            own = [k for k in np.flatnonzero(slides) if held[k].holder == holder]
+            check_gross_slip(problem, presses, np.array(own), [held[k] for k in own])
         solution = solve_with_fallbacks(problem, closed)
     return _state_after(contact, state, solution, free, fixed)
 

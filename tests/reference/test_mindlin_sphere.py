@@ -54,3 +54,13 @@ def test_torque_of_gross_twist(r):
     """requirement: ∫ mu p r dA."""
     limit = SPHERE.friction * SPHERE.peak * np.sqrt(np.maximum(1 - (r / A) ** 2, 0.0))
     assert over_contact(limit * r, r) == pytest.approx(SPHERE.twist_limit, rel=1e-5)
+
+
+def test_small_twists_meet_the_stiffness_of_a_stuck_circle():
+    """requirement: the shear ``4 G φ r/(π sqrt(a² - r²))`` of a stuck circle has the torque."""
+    soft = sum(2 * (1 + nu) / E for E, nu in SPHERE.bodies)
+    angle = np.linspace(0.0, np.pi / 2, 20001)  # r = a sin(angle)
+    r = A * np.sin(angle)
+    shear = 4 / np.pi * r / soft  # times sqrt(a² - r²), per twist of both bodies together
+    torque = np.trapezoid(2 * np.pi * r**2 * shear, angle)
+    assert 1 / torque == pytest.approx(SPHERE.twist_compliance, rel=1e-6)

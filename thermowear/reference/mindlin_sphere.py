@@ -65,6 +65,15 @@ class MindlinSphere:
         return 3 * pi / 16 * self.limit * self.contact_radius
 
     @property
+    def twist_compliance(self) -> float:
+        """Twist per torque while all sticks, ``3 (1/G_1 + 1/G_2)/(16 a³)`` [rad/(N m)].
+
+        Reissner and Sagoci; Johnson, section 3.9.
+        """
+        soft = sum(2 * (1 + ν) / E for E, ν in self.bodies)
+        return 3 * soft / (16 * self.contact_radius**3)
+
+    @property
     def stretch(self) -> float:
         """Displacement K at the force of gross slip [m]."""
         soft = sum((2 - ν) * 2 * (1 + ν) / E for E, ν in self.bodies)

@@ -20,6 +20,7 @@ from ....results import FrictionHistory, FrictionInterface, InterfaceFields, Res
 from ...check import Check, compare, compare_worst, computed, run_starter
 
 JOHNSON = "Johnson, Contact Mechanics (1985), section 7.2"
+REISSNER = "Reissner and Sagoci, J. Appl. Phys. 15 (1944) 652"
 STEEL = (200e9, 0.3)
 RADIUS, FORCE, FRICTION = 10e-3, 0.25, 0.3
 EXACT = MindlinSphere(FORCE, RADIUS, (STEEL, STEEL), FRICTION)
@@ -77,10 +78,14 @@ def _turned() -> Iterator[Check]:
     for what, allowed in (("with", 1e-6), ("without", 1e-2)):
         quantity = f"displacement, force turned {what} the mesh [m]"
         yield compare(quantity, displaced[what], _displacement(along), allowed, note)
-    twist = {"twist": ["0 rad", f"{TWIST!r} rad"]}
+    small = 0.02 * EXACT.twist_limit * EXACT.twist_compliance
+    twist = {"twist": ["0 rad", f"{small!r} rad", f"{TWIST!r} rad"]}
     _, twisted = rubbed(_geometry(half=False), twist, elements=14)
-    torque, quantity = twisted.tangential[-1].torque, "torque of gross slip [N m]"
-    yield compare(quantity, torque, EXACT.twist_limit, 1e-2, "∫ mu p r dA = 3π/16 mu P a")
+    torques = {row.time: row.torque for row in twisted.tangential}
+    found, known = small / torques[1.0], EXACT.twist_compliance
+    yield compare("twist per torque, sticking [rad/(N m)]", found, known, 5e-2, REISSNER)
+    quantity, source = "torque of gross slip [N m]", "∫ mu p r dA = 3π/16 mu P a"
+    yield compare(quantity, torques[2.0], EXACT.twist_limit, 1e-2, source)
 
 
 def _pushed(force: float, mesh: float) -> FrictionHistory:

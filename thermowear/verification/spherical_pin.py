@@ -74,6 +74,46 @@ class SphericalPin:
         write_mesh(mesh, path)
         return mesh
 
+    def write_section(self, path: Path) -> None:
+        """Write a section of both bodies by an axis along y, of triangles, to a file."""
+        unit, (radius, depth) = 1.0, self.block
+        corners = {
+            "pin": [(0.0, 0.0), (self.radius, float(self.rise(np.array(self.radius))))]
+            + [(self.radius, self.height), (0.0, self.height)],
+            "block": [(0.0, 0.0), (0.0, -depth), (radius, -depth), (radius, 0.0)]
+            + [(self.radius, 0.0)],
+        }
+        sides = {
+            "pin": ("face", "side", "top", ""),
+            "block": ("", "bottom", "side", "rest", "face"),
+        }
+        with gmsh_model("section") as gmsh:
+            geo, model = gmsh.model.geo, gmsh.model
+            for body, places in corners.items():
+                points = [geo.addPoint(x / unit, y / unit, 0.0) for x, y in places]
+                center = geo.addPoint(0.0, self.sphere, 0.0)
+                lines = []
+                for k, name in enumerate(sides[body]):
+                    ends = points[k], points[(k + 1) % len(points)]
+                    arc = (body, name) == ("pin", "face")
+                    add = geo.addCircleArc(ends[0], center, ends[1]) if arc else geo.addLine(*ends)
+                    lines.append(add)
+                    if name:
+                        model.addPhysicalGroup(1, [add], name=f"{body}_{name}")
+                surface = geo.addPlaneSurface([geo.addCurveLoop(lines)])
+                model.addPhysicalGroup(2, [surface], name=body)
+            geo.synchronize()
+            field = model.mesh.field.add("MathEval")
+            away = f"Sqrt(x*x+y*y)-{self.radius!r}"
+            size = f"{self.size!r}+{_GROWTH}*0.5*({away}+Fabs({away}))"
+            model.mesh.field.setString(field, "F", size)
+            model.mesh.field.setAsBackgroundMesh(field)
+            for option in ("FromPoints", "ExtendFromBoundary"):
+                gmsh.option.setNumber(f"Mesh.MeshSize{option}", 0)
+            model.mesh.generate(2)
+            model.mesh.setOrder(self.order)
+            gmsh.write(str(path))
+
     def _meshed(self) -> dict[str, MeshedBody]:
         """Both bodies with a common flat face; gmsh computes in radii of the pin."""
         unit, (radius, depth) = self.radius, self.block

@@ -63,6 +63,10 @@ class SphericalPin:
         """Height of the end at distances from the axis [m]."""
         return away**2 / (self.sphere + np.sqrt(self.sphere**2 - away**2))
 
+    def finer(self, factor: float) -> SphericalPin:
+        """The same pin with smaller elements."""
+        return replace(self, size=self.size / factor)
+
     def write(self, path: Path) -> TaggedMesh:
         """Write the mesh to a file, and return it."""
         bodies = self._meshed()

@@ -90,7 +90,7 @@ def meshed_inside(mesh: TaggedMesh, parts: tuple[str, ...], extension: Extension
 
 def _shells(mesh: TaggedMesh, parts: tuple[str, ...]) -> _Shells:
     """Closed surfaces of the connected volumes of the parts of a body."""
-    count, bounds, tags = 0, [], []
+    count, bounds, tags = 0, [], list[int]()
     for tag in (tag for tag in mesh.tags_of(parts) if np.any(mesh.cell_tags == tag)):
         cells = mesh.cells[mesh.cell_tags == tag]
         connected = components(_through_facets(mesh, cells), len(cells))

@@ -5,8 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import tomli_w
 
 import thermowear as tw
+from thermowear.case import as_plain
 from thermowear.geometry.mesh.nodes import boundary
 from thermowear.geometry.mesh.tagged import quality
 from thermowear.geometry.moving.moved import cells_of
@@ -15,6 +17,7 @@ from thermowear.simulation.from_case import run as run_case
 from thermowear.verification.spherical_pin import NAMES, SphericalPin
 
 from ..case.starter import changed
+from ..test_parallel import summaries
 from .test_checkpoint import Watched, assert_the_same
 
 SPHERE, RADIUS, SPEED, WEAR, FORCE = 10e-3, 6e-3, 0.5, 1e-12, 100.0
@@ -158,3 +161,17 @@ def test_temperatures_are_carried_over_to_new_cells(tmp_path):
     weight = known.interface.weight / known.interface.weight.sum()
     assert abs(weight @ (rises[0] - rises[1])) < 0.01 * (weight @ rises[1])
     assert max(row.balance_error for row in found.heat if row.time > 0.1) < 1e-9
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.*planes of symmetry cut a sector")
+def test_two_ranks_give_the_serial_numbers(tmp_path):
+    """Also after remeshing, by gmsh on one of them."""
+    squeezed(tmp_path / "pin.msh", 2)
+    case = tmp_path / "case.toml"
+    tables = as_plain(flat(tmp_path / "pin.msh", **{"analysis.end_time": "500 s"}))
+    case.write_text(tomli_w.dumps(tables), encoding="utf-8")
+    (serial, _), (parallel, _) = summaries(tmp_path, case)
+    assert serial["geometry_meshed_anew"] == parallel["geometry_meshed_anew"] == 1
+    for key in ("max_pressure_Pa", "wear_volume_1_m3", "geometry_volume_1_m3", "shape_range_m"):
+        assert parallel[key] == pytest.approx(serial[key], rel=1e-6, abs=0.0), key

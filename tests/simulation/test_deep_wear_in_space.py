@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import tomli_w
+from scipy.spatial import cKDTree
 
 import thermowear as tw
 from thermowear.case import as_plain
@@ -67,9 +68,9 @@ def test_tetrahedra_follow_the_worn_face(tmp_path, order, size):
     assert off < (0.1 if order == 1 else 0.05)
 
 
-def squeezed(path, order):
-    """Pin with an almost flat end whose inner nodes lie too high, in a file."""
-    mesh = SphericalPin(1.0, RADIUS, 10e-3, (9e-3, 6e-3), 3e-3, order).write(path)
+def squeezed(path, order, sphere=1.0):
+    """Pin, by default with an almost flat end, whose inner nodes lie too high, in a file."""
+    mesh = SphericalPin(sphere, RADIUS, 10e-3, (9e-3, 6e-3), 3e-3, order).write(path)
     cells = cells_of(mesh, ("pin",))
     inside = np.setdiff1d(cells, boundary("tetrahedron", order, cells))
     points = mesh.points.copy()
@@ -127,6 +128,25 @@ def test_a_remeshed_body_goes_on(tmp_path):
     assert i.weight @ np.abs(i.pressure - mean) < 0.01 * FORCE / 4
     saved = watched.checkpoints[-2].state(rank=0)
     assert_the_same(whole, run_case(case, None, Watched(), None, saved))
+
+
+@pytest.mark.filterwarnings("ignore:.*planes of symmetry cut a sector")
+def test_a_curved_face_goes_on_after_remeshing(tmp_path):
+    """requirement: as on a mesh that needs none, at the same contact points."""
+    path, results = tmp_path / "pin.msh", []
+    squeezed(path, 2, 20e-3)
+    results.append(tw.run(flat(path, **{"analysis.end_time": "300 s"})))
+    SphericalPin(20e-3, RADIUS, 10e-3, (9e-3, 6e-3), 3e-3).write(path)
+    results.append(tw.run(flat(path, **{"analysis.end_time": "300 s"})))
+    assert [result.summary["geometry_meshed_anew"] for result in results] == [1, 0]
+    assert min(result.summary["geometry_updates"] for result in results) >= 4
+    one, other = (result.interface for result in results)
+    points = [np.column_stack([i.x, i.y]) for i in (one, other)]
+    _, same = cKDTree(points[1]).query(points[0])
+    assert points[0] == pytest.approx(points[1][same], abs=2e-6)
+    for field, within in (("wear_1", 2e-3), ("z", 2e-3), ("gap", 5e-3)):
+        ours, theirs = getattr(one, field), getattr(other, field)[same]
+        assert np.abs(ours - theirs).max() < within * np.abs(theirs).max(), field
 
 
 HOT = {

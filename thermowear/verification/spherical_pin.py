@@ -64,7 +64,7 @@ class SphericalPin:
         return away**2 / (self.sphere + np.sqrt(self.sphere**2 - away**2))
 
     def finer(self, factor: float) -> SphericalPin:
-        """The same pin with smaller elements."""
+        """Pin of the same dimensions with smaller elements."""
         return replace(self, size=self.size / factor)
 
     def write(self, path: Path) -> TaggedMesh:

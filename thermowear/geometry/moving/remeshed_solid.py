@@ -29,6 +29,8 @@ _SECONDS = 300
 """Largest elapsed time of a run of gmsh."""
 _SETTINGS = ((1, 0.3), (1, 0.6), (10, 0.3), (10, 0.6))
 """Algorithms of gmsh, and qualities below which it optimises cells; the best result varies."""
+_GOOD = 0.25
+"""Smallest scaled Jacobian above which no better mesh is sought."""
 _SAME_VOLUME = 1e-6
 """Largest relative difference of the volume of new cells and of that inside of the surface."""
 _LONGEST = 200
@@ -74,17 +76,21 @@ def meshed_inside(mesh: TaggedMesh, parts: tuple[str, ...], extension: Extension
         If gmsh cannot mesh the body.
     """
     shells = _shells(mesh, parts)
-    found, trouble = [], ""
+    best, highest, trouble = None, -np.inf, ""
     for settings in _SETTINGS:
         try:
             straight = _filled(mesh, shells, settings)
         except ValueError as reason:
             trouble = trouble or str(reason)
-        else:
-            found.append(_curved(mesh, shells, straight, extension))
-    if not found:
+            continue
+        body = _curved(mesh, shells, straight, extension)
+        least = float(scaled_jacobians(body).min())
+        if best is None or least > highest:
+            best, highest = body, least
+        if highest >= _GOOD:
+            break
+    if best is None:
         raise ComputationError(f"remeshing: gmsh could not mesh the worn body: {trouble}")
-    best = max(found, key=lambda body: float(scaled_jacobians(body).min()))
     return with_body(mesh, parts, best)
 
 

@@ -30,6 +30,7 @@ from .cases.wear.beam_shakedown import beam_shakedown
 from .cases.wear.coated_bush import coated_bush
 from .cases.wear.coating import coating
 from .cases.wear.composite_face import composite_face
+from .cases.wear.deep_wear_in_space import deep_wear_3d
 from .cases.wear.geometry_updates import block_on_ring, deep_wear, pin_on_disc
 from .cases.wear.growing import growing_cylinder, growing_sphere
 from .cases.wear.pin_on_disk_in_space import pin_on_disk_3d
@@ -39,7 +40,7 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     annular_punch, running_in, patch, patch_3d, hertz_line, hertz_sphere, hertz_sphere_3d,
     hertz_sphere_3d_fine, hertz_elliptical, flat_punch,
     methods_agree, mindlin, growing_cylinder, growing_sphere, block_on_ring, pin_on_disc,
-    deep_wear, beam_shakedown, fretting_wear, fretting_cylinder, fuel_fretting,
+    deep_wear, deep_wear_3d, beam_shakedown, fretting_wear, fretting_cylinder, fuel_fretting,
     mindlin_sphere, fretting_sphere,
     reciprocating, moving_band, two_slabs, pressure_conductance, temperature_dependent,
     minimality, step_flux, braking_stop, sliding_rod, half_plane_instability, optimal_shape,

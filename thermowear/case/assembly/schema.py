@@ -68,6 +68,8 @@ class AssemblyCase(Section):
         given = self.contacts or {name: AssemblyContactTable() for name in self.geometry.contacts}
         found = {name: self._complete(name, table) for name, table in given.items()}
         object.__setattr__(self, "contacts", found)
+        sliding = tuple(t.between for t in found.values() if t.between and not t.tie)
+        object.__setattr__(self, "geometry", self.geometry.with_sliding(sliding))
         return self
 
     def _complete(self, name: str, table: AssemblyContactTable) -> AssemblyContactTable:

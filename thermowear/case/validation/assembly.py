@@ -16,6 +16,7 @@ from . import cyclic_assembly, materials
 from .analyses import varying
 from .assembly_histories import histories
 from .layer_wear import layer_wear
+from .mesh_sizes import mesh_sizes
 from .part_wear import part_wear
 
 
@@ -92,6 +93,7 @@ _CHECKS = (
     layer_wear,
     part_wear,
     _carried,
+    mesh_sizes,
     cyclic_assembly.unsupported,
     cyclic_assembly.fretting,
     cyclic_assembly.reciprocating,

@@ -13,6 +13,7 @@ from ..tables.schema import Case
 from ..values.section import Fault
 from . import analyses, conditions, materials
 from .layer_wear import layer_wear
+from .mesh_sizes import mesh_sizes
 from .part_wear import part_wear
 
 _SLIDING = ("steady", "transient", "reciprocating")
@@ -200,6 +201,7 @@ def _symmetry(case: Case) -> Iterator[Fault]:
 _CHECKS = (
     _names,
     _model,
+    mesh_sizes,
     materials.cell_sets,
     materials.materials,
     materials.locking,

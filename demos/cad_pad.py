@@ -24,8 +24,8 @@ SLOT = (3.0, 7.0)
 """Width and depth of the slot [mm]."""
 PISTON = (104.0, 16.0)
 """Distance of the axis of the piston from that of the disk, and its radius [mm]."""
-DISK = (66.0, 130.0, 12.0)
-"""Inner and outer radius, and thickness [mm]; the rubbed face is z = 0."""
+DISK, TRACK = (66.0, 130.0, 12.0), (83.0, 125.0)
+"""Inner and outer radius, and thickness [mm]; the same of the rubbed ring of its face z = 0."""
 
 
 def sector(occ, inner: float, outer: float, half: float, low: float, high: float) -> int:
@@ -71,11 +71,13 @@ def draw_pad(occ) -> None:
 
 
 def draw_disk(occ) -> None:
-    """Ring below z = 0."""
+    """Ring below z = 0, with the ring that the pad rubs on."""
     inner, outer, thick = DISK
     whole = occ.addCylinder(0, 0, -thick, 0, 0, thick, outer)
     hole = occ.addCylinder(0, 0, -thick, 0, 0, thick, inner)
-    occ.cut([(3, whole)], [(3, hole)])
+    ring, _ = occ.cut([(3, whole)], [(3, hole)])
+    circles = [(1, occ.addCircle(0, 0, 0, radius)) for radius in TRACK]
+    occ.fragment(ring, circles)
 
 
 def face_label(place: np.ndarray, area: float) -> str:
@@ -86,6 +88,9 @@ def face_label(place: np.ndarray, area: float) -> str:
         return "PISTON" if abs(area - math.pi * PISTON[1] ** 2) < 1.0 else "PLATE_BACK"
     if abs(z + DISK[2]) < 1e-6:
         return "DISK_BOTTOM"
+    if z == 0.0 and math.hypot(x, y) < 1e-3:
+        rubbed = abs(area - math.pi * (TRACK[1] ** 2 - TRACK[0] ** 2)) < 1.0
+        return "" if rubbed else "DISK_REST"
     if z < 0.0 and math.hypot(x, y) < 1e-3:
         return "DISK_INSIDE" if area < 2 * math.pi * 1.01 * DISK[0] * DISK[2] else "DISK_OUTSIDE"
     return ""

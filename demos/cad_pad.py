@@ -96,7 +96,7 @@ def face_label(place: np.ndarray, area: float) -> str:
     return ""
 
 
-def write(path: Path, draw, solids: list[str], unit: str = "MM") -> None:
+def write(path: Path, draw, solids: list[str]) -> None:
     """Write a STEP file with labels, without its date.
 
     Parameters
@@ -106,18 +106,14 @@ def write(path: Path, draw, solids: list[str], unit: str = "MM") -> None:
         Draws with ``gmsh.model.occ``, in millimetres.
     solids : list of str
         Labels of the solids.
-    unit : str
-        Unit of the file, ``"MM"``, ``"M"`` or ``"INCH"``.
     """
     gmsh.initialize(["-noenv"], interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
         draw(gmsh.model.occ)
         gmsh.model.occ.synchronize()
-        gmsh.option.setString("Geometry.OCCTargetUnit", unit)
         gmsh.write(str(path))
         gmsh.model.add("read")  # faces are listed as in the file
-        gmsh.option.setString("Geometry.OCCTargetUnit", "MM")
         occ = gmsh.model.occ
         occ.importShapes(str(path))
         faces = [tag for _, tag in occ.getEntities(2)]

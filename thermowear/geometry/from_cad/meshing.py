@@ -10,14 +10,18 @@ from ..mesh.tagged import jacobians
 from .request import CadError
 from .solids import UNIT, CadBody, CadFace, in_mm
 
-_TETRAHEDRON, _TRIANGLE = 11, 9
-"""Quadratic elements of gmsh."""
+_TETRAHEDRA, _TRIANGLE = {1: 4, 2: 11}, 9
+"""Elements of gmsh: tetrahedra by order, quadratic triangles."""
+_ATTEMPTS = ((1, 0.3), (1, 0.6), (10, 0.3))
+"""Algorithms of gmsh (Delaunay, HXT), and the quality up to which it optimises cells."""
+_POOR = 0.05
+"""Smallest scaled Jacobian below which other algorithms are tried."""
 _GOOD, _LEAST = 0.1, 1e-3
-"""Smallest scaled Jacobian that is not improved, and the least that is accepted."""
+"""Scaled Jacobian below which curved cells are improved, and the least that is accepted."""
+_WORSE = 0.7
+"""Smallest scaled Jacobian of curved cells, relative to that of straight ones, to be improved."""
 _PLACES = 4
 """Points along each side of a cell at which its Jacobian is evaluated."""
-_OPTIMISERS = ("HighOrder", "HighOrderElastic", "HighOrder")
-"""Optimisers of curved cells, one after the other until the cells are good."""
 
 
 def make_mesh(gmsh, bodies: Sequence[CadBody]) -> None:
@@ -30,21 +34,20 @@ def make_mesh(gmsh, bodies: Sequence[CadBody]) -> None:
     """
     mesh = gmsh.model.mesh
     try:
-        mesh.generate(3)
+        straight = _straight_mesh(gmsh, bodies)
         mesh.setOrder(2)
-        for optimiser in _OPTIMISERS:
-            if min(_quality(gmsh, body).min() for body in bodies) >= _GOOD:
-                break
-            mesh.optimize(optimiser)
+        if _least(gmsh, bodies, 2) < min(_GOOD, _WORSE * straight):
+            mesh.optimize("HighOrderElastic")
+        if _least(gmsh, bodies, 2) < _LEAST:
+            mesh.optimize("HighOrder")  # ends the process where it fails
     except CadError:
         raise
     except Exception as trouble:  # gmsh raises nothing more specific
         raise CadError(f"mesh.size: gmsh could not mesh the bodies: {trouble}") from None
     for body in bodies:
-        found = _quality(gmsh, body)
+        found = _quality(gmsh, body, 2)
         if found.min() < _LEAST:
-            _, places = _cells(gmsh, body)
-            where = places[int(found.argmin())].mean(axis=0)
+            where = _places(gmsh, body, 2)[int(found.argmin())].mean(axis=0)
             raise CadError(
                 f"mesh.size: {np.count_nonzero(found < _LEAST)} of {len(found)} curved cells of "
                 f"{body.name!r} are tangled (smallest scaled Jacobian {found.min():.2g}), one at "
@@ -52,22 +55,47 @@ def make_mesh(gmsh, bodies: Sequence[CadBody]) -> None:
             )
 
 
-def _quality(gmsh, body: CadBody) -> np.ndarray:
+def _straight_mesh(gmsh, bodies: Sequence[CadBody]) -> float:
+    """Make the mesh of straight cells with the best algorithm; its smallest scaled Jacobian."""
+    found: dict[tuple[int, float], float] = {}
+    for attempt in _ATTEMPTS:
+        found[attempt] = _generated(gmsh, bodies, *attempt)
+        if found[attempt] >= _POOR:
+            return found[attempt]
+    best = max(found, key=found.__getitem__)
+    return _generated(gmsh, bodies, *best)
+
+
+def _generated(gmsh, bodies: Sequence[CadBody], algorithm: int, threshold: float) -> float:
+    """Make the mesh of straight cells; its smallest scaled Jacobian."""
+    gmsh.option.setNumber("Mesh.Algorithm3D", algorithm)
+    gmsh.option.setNumber("Mesh.OptimizeThreshold", threshold)
+    gmsh.model.mesh.clear()
+    gmsh.model.mesh.generate(3)
+    return _least(gmsh, bodies, 1)
+
+
+def _least(gmsh, bodies: Sequence[CadBody], order: int) -> float:
+    """Smallest scaled Jacobian of all cells."""
+    return float(min(_quality(gmsh, body, order).min() for body in bodies))
+
+
+def _quality(gmsh, body: CadBody, order: int) -> np.ndarray:
     """Smallest scaled Jacobian of each cell of a body, shape (n,)."""
-    _, places = _cells(gmsh, body)
+    places = _places(gmsh, body, order)
     if not len(places):
         raise CadError(f"mesh.size: gmsh could not mesh {body.name!r} with tetrahedra")
-    signed = jacobians("tetrahedron", 2, places, _PLACES)
-    return np.nan_to_num(np.where(signed[2] < 0, -signed[1], signed[0]), nan=-1.0)
+    least, most, mean = jacobians("tetrahedron", order, places, _PLACES)
+    return np.nan_to_num(np.where(mean < 0, -most, least), nan=-1.0)
 
 
-def _cells(gmsh, body: CadBody) -> tuple[np.ndarray, np.ndarray]:
-    """Node tags of the cells of a body, and their coordinates, shape (n, 10, 3) [mm]."""
-    found = [gmsh.model.mesh.getElementsByType(_TETRAHEDRON, s.tag)[1] for s in body.solids]
-    cells = np.concatenate(found).astype(np.int64).reshape(-1, 10)
+def _places(gmsh, body: CadBody, order: int) -> np.ndarray:
+    """Nodes of the cells of a body, shape (n, 4 or 10, 3) [mm]."""
+    kind, count = _TETRAHEDRA[order], (4, 10)[order - 1]
+    found = [gmsh.model.mesh.getElementsByType(kind, s.tag)[1] for s in body.solids]
+    cells = np.concatenate(found).astype(np.int64).reshape(-1, count)
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
-    row = _rows(tags)
-    return cells, coordinates.reshape(-1, 3)[row[cells]]
+    return coordinates.reshape(-1, 3)[_rows(tags)[cells]]
 
 
 def _rows(tags: np.ndarray) -> np.ndarray:
@@ -100,7 +128,7 @@ def mesh_arrays(
     arrays = {"points": UNIT * coordinates.reshape(-1, 3)}
     for b, body in enumerate(bodies):
         arrays[f"cells_{b}"], of_solid = _elements(
-            gmsh, _TETRAHEDRON, row, [[solid.tag] for solid in body.solids]
+            gmsh, _TETRAHEDRA[2], row, [[solid.tag] for solid in body.solids]
         )
         arrays |= {f"solid_{b}_{s}": found for s, found in enumerate(of_solid)}
         own = [surfaces[name].get(body.name, ()) for name in surfaces]
@@ -115,7 +143,7 @@ def _elements(
     gmsh, kind: int, row: np.ndarray, groups: list[list[int]]
 ) -> tuple[np.ndarray, list[np.ndarray]]:
     """Nodes of the elements of some entities, and the indices of those of each group."""
-    count = 10 if kind == _TETRAHEDRON else 6
+    count = 6 if kind == _TRIANGLE else 10
     found, members, start = [np.empty((0, count), dtype=np.int64)], [], 0
     for tags in groups:
         nodes = [gmsh.model.mesh.getElementsByType(kind, tag)[1] for tag in tags]

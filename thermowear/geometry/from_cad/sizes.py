@@ -85,7 +85,6 @@ def set_sizes(gmsh, bodies: Sequence[CadBody], contacts: Sequence[Refinement]) -
         "MeshSizeExtendFromBoundary": 0,
         "MeshSizeFromCurvature": _PER_TURN,
         "Algorithm": 6,
-        "Algorithm3D": 1,
         "Optimize": 1,
     }
     for name, value in settings.items():

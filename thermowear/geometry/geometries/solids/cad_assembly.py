@@ -14,7 +14,7 @@ from ...from_cad.request import CadRequest, SurfaceRequest, TouchRequest
 from ...reading.bodies import bodies_in
 from ...reading.named import Named
 from ..assembly_file import AssemblyFile
-from .cad_keys import CadSolids, CadSurfaces, body_requests, check_unit
+from .cad_keys import CadSolids, CadSurfaces, body_requests, check_files
 
 
 class CadAssembly(AssemblyFile):
@@ -60,7 +60,7 @@ class CadAssembly(AssemblyFile):
 
     @model_validator(mode="after")
     def _from_cad(self):
-        check_unit(self.path, self.paths, self.length_unit)
+        check_files(self)
         if not self.contact and self.contact_tolerance is not None:
             raise KeyFault("contact_tolerance", "requires contact")
         if self.contact == "auto":

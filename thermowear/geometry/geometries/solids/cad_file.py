@@ -13,7 +13,7 @@ from ...from_cad.meshing_process import meshed_contents
 from ...from_cad.request import CadRequest, FaceChoice, SurfaceRequest, TouchRequest
 from ...reading.bodies import bodies_in
 from ..mesh_file import MeshFile
-from .cad_keys import CadFaces, CadSolids, body_requests, check_unit
+from .cad_keys import CadFaces, CadSolids, body_requests, check_files
 
 
 class CadFile(MeshFile):
@@ -62,7 +62,7 @@ class CadFile(MeshFile):
 
     @model_validator(mode="after")
     def _from_cad(self, info: ValidationInfo):
-        check_unit(self.path, self.paths, self.length_unit)
+        check_files(self)
         if self.contact_names == "auto":
             for name in set(self.contact) & set(self.surface_names):
                 raise KeyFault(f"surfaces.{name}", 'is found by contact = "auto"')

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -48,13 +47,10 @@ class CadFaceTable(Section):
             raise ValueError(
                 f"found {' and '.join(ways) or 'none'}; needs one of: label, point, plane"
             )
-        if (self.plane is None) != (self.at is None):
-            raise KeyFault(
-                "at",
-                'missing; a plane needs the distance from the origin at = "5 mm"'
-                if self.at is None
-                else "requires a plane",
-            )
+        if self.plane is None and self.at is not None:
+            raise KeyFault("at", "requires a plane")
+        if self.plane is not None and self.at is None:
+            raise KeyFault("at", 'missing; a plane needs its distance from the origin: at = "5 mm"')
         if isinstance(self.plane, tuple) and not np.linalg.norm(self.plane) > 0.0:
             raise KeyFault("plane", "the normal has no direction")
         return self
@@ -114,18 +110,26 @@ CadSurfaces = Annotated[dict[str, CadFaces], BeforeValidator(_surfaces)]
 """Surfaces of a body by their names, or a list of labels."""
 
 
-def check_unit(path: str | None, paths: Mapping[str, str], length_unit: float | None) -> None:
-    """STEP files have a unit of length, BREP files need one.
+def check_files(geometry: Any) -> None:
+    """Check the keys of the files: STEP files have a unit of length, BREP files need one.
+
+    Parameters
+    ----------
+    geometry : CadFile or CadAssembly
 
     Raises
     ------
     KeyFault
     """
-    files = [path] if path is not None else list(paths.values())
+    for body in geometry.body_names:
+        if body not in geometry.bodies:
+            known = ", ".join(geometry.bodies)
+            raise KeyFault(f"bodies.{body}", f"unknown body; must be one of: {known}")
+    files = list(geometry.paths.values()) if geometry.path is None else [geometry.path]
     bare = [Path(file).suffix.lower() == _BREP for file in files]
-    if any(bare) and length_unit is None:
+    if any(bare) and geometry.length_unit is None:
         raise KeyFault("length_unit", 'missing; a BREP file has no unit: such as "1 mm"')
-    if not any(bare) and length_unit is not None:
+    if not any(bare) and geometry.length_unit is not None:
         raise KeyFault("length_unit", "leave it out; STEP files have a unit of their own")
 
 

@@ -95,3 +95,22 @@ def test_the_fields_are_volumes(folder_of):
     assert {block.type for block in mesh.cells} == {"hexahedron"}
     assert np.ptp(mesh.points, axis=0) == pytest.approx([0.12, 0.14, 0.11])
     assert mesh.point_data["displacement_m"].shape[1] == 3
+
+
+@pytest.mark.parametrize("graded", [False, True])
+def test_slots_are_left_out(graded):
+    """requirement: nothing is drawn across a slot that separates the points of a face."""
+    along = 30 * GRADED if graded else np.linspace(0.0, 30.0, 31)
+    x, y = grid(np.linspace(0.0, 40.0, 81), np.concatenate([along, 36 + along]))
+    steps = np.gradient(along)
+    weights = np.tile(np.concatenate([steps, steps]) * 0.5, 81)
+    assert areas(triangulated(x, y)).sum() == pytest.approx(40 * 66, rel=1e-6)
+    assert areas(triangulated(x, y, weights)).sum() == pytest.approx(2 * 40 * 30, rel=0.02)
+
+
+def test_small_weights_tear_no_holes():
+    """requirement: points of small pieces of facets do not take triangles out of a face."""
+    rng = np.random.default_rng(5)
+    x, y = grid(np.linspace(0.0, 40.0, 41), np.linspace(0.0, 40.0, 41))
+    weights = np.where(rng.random(len(x)) < 0.1, 1e-3, 1.0)
+    assert areas(triangulated(x, y, weights)).sum() == pytest.approx(40 * 40, rel=1e-9)

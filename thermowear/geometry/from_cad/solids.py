@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -91,13 +90,15 @@ def read_bodies(gmsh, requests: Sequence[BodyRequest]) -> dict[str, CadBody]:
     for request in requests:
         if request.path not in files:
             files[request.path] = _read(gmsh, request)
+    known = set(gmsh.model.occ.getEntities(0))
     chosen = {r.name: _chosen(gmsh, r, files[r.path]) for r in requests}
+    points = [point for point in gmsh.model.occ.getEntities(0) if point not in known]
     _check_once(requests, chosen)
     wanted = {solid.tag for solids in chosen.values() for solid in solids}
     rest = [(3, s.tag) for solids in files.values() for s in solids if s.tag not in wanted]
-    if rest:
-        gmsh.model.occ.remove(rest, recursive=True)
-        gmsh.model.occ.synchronize()
+    gmsh.model.occ.remove(rest, recursive=True)
+    gmsh.model.occ.remove(points)
+    gmsh.model.occ.synchronize()
     return {request.name: _body(gmsh, request, chosen[request.name]) for request in requests}
 
 
@@ -227,21 +228,15 @@ def _check_apart(gmsh, request: BodyRequest, solids: list[CadSolid]) -> None:
                 )
 
 
-@contextmanager
-def point_at(gmsh, place: Iterable[float]) -> Iterator[int]:
-    """Point of the CAD kernel, for measurements."""
+def distance(gmsh, place: Iterable[float], entity: tuple[int, int]) -> float:
+    """Distance of a point from a solid or a face, which ends at its edges [mm].
+
+    The point stays in the CAD kernel, as its removal would take far longer; it does not get into
+    the mesh as long as the model is not synchronised.
+    """
     occ = gmsh.model.occ
     tag = occ.addPoint(*map(float, place))
-    try:
-        yield tag
-    finally:
-        occ.remove([(0, tag)])
-
-
-def distance(gmsh, place: Iterable[float], entity: tuple[int, int]) -> float:
-    """Distance of a point from a solid or a face, which ends at its edges [mm]."""
-    with point_at(gmsh, place) as tag:
-        return float(gmsh.model.occ.getDistance(0, tag, *entity)[0])
+    return float(occ.getDistance(0, tag, *entity)[0])
 
 
 def parameters(gmsh, face: CadFace, count: int) -> np.ndarray:

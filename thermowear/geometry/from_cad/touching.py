@@ -57,16 +57,13 @@ def common_faces(
         See `CadRequest`.
     """
     within = _within(one, other, tolerance)
-    pairs = [
-        (a, b)
-        for a in one.faces
-        for b in other.faces
-        if np.all(a.box[0] <= b.box[1] + within) and np.all(b.box[0] <= a.box[1] + within)
-    ]
-    samples = {
-        face: _samples(gmsh, face)
-        for face in dict.fromkeys(face for pair in pairs for face in pair)
-    }
+    boxes, others = (np.array([face.box for face in body.faces]) for body in (one, other))
+    near = (boxes[:, None, 0] <= others[:, 1] + within) & (
+        others[:, 0] <= boxes[:, None, 1] + within
+    )
+    pairs = [(one.faces[a], other.faces[b]) for a, b in np.argwhere(near.all(axis=2))]
+    touched = dict.fromkeys(face for pair in pairs for face in pair)
+    samples = {face: _samples(gmsh, face) for face in touched}
     found = [
         (a, b)
         for a, b in pairs

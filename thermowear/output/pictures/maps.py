@@ -24,7 +24,7 @@ _LARGEST_ANGLE = 100.0
 _SHORT = 0.1
 """Length of a boundary edge relative to the face, up to which a triangle of any angle is drawn."""
 
-_GAP, _LONG, _ROUNDS = 1.0, 6.0, 4
+_GAP, _LONG, _ROUNDS = 0.8, 6.0, 4
 """Area of a triangle relative to that of its corners above which it lies across a gap; length of a
 side relative to the root of a point's area, and number of triangles beside it that do so, too."""
 

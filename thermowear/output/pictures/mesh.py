@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -41,7 +42,7 @@ def draw_mesh(source: Path, path: Path) -> None:
     bodies, surfaces = (arrays[key].tolist() for key in ("bodies", "surfaces"))
     palette = mpl.colormaps["tab20"].colors  # type: ignore[attr-defined]
     colors = {k: palette[_ORDER[k % len(_ORDER)]] for k in range(len(surfaces))}
-    options = {"style": MAP_STYLE, "crop": True, "margin": (0.0, 0.6)}
+    options: dict[str, Any] = {"style": MAP_STYLE, "crop": True, "margin": (0.0, 0.6)}
     with panels(path, 2 * len(bodies), 2, _VIEW, **options) as (figure, axes):
         for b, body in enumerate(bodies):
             points, facets, surface = (

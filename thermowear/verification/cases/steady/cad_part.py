@@ -53,7 +53,7 @@ def cad_part() -> Iterator[Check]:
         yield from _ring(Path(folder))
 
 
-Draw = Callable[[Any], None]
+Draw = Callable[[Any], Any]
 
 
 def _written(folder: Path, **draws: Draw) -> dict[str, str]:
@@ -115,8 +115,10 @@ def _tables(files: dict[str, str], surfaces: dict[str, Any], **tables: Any) -> d
 def _slotted_pad(folder: Path) -> Iterator[Check]:
     """Pad with chamfers and slots: its drawing, OpenCASCADE's mass properties, and balances."""
     files = _written(folder, pad=_draw_pad, block=lambda occ: _box(occ, BLOCK, -BLOCK[2]))
-    surfaces = {"top": {"point": ["3 mm", "20 mm", f"{HEIGHT} mm"]}}
-    surfaces |= {"bottom": {"plane": "z", "at": f"{-BLOCK[2]} mm"}}
+    surfaces = {
+        "top": {"point": ["3 mm", "20 mm", f"{HEIGHT} mm"]},
+        "bottom": {"plane": "z", "at": f"{-BLOCK[2]} mm"},
+    }
     mesh = {"degree": 2, "size": "10 mm", "contact_size": "5 mm", "grading": 0.7}
     result = computed(case := load(_tables(files, surfaces, mesh=mesh)))
     tagged = case.tagged_mesh()

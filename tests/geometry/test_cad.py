@@ -294,6 +294,17 @@ def test_an_edge_on_a_face_is_no_contact(tmp_path):
     assert "touch, but no faces of them coincide" in line
 
 
+def test_faces_with_equal_normals_are_no_contact(tmp_path):
+    """requirement: bodies lie on both sides of a contact face; sides that coincide are none."""
+    files = {
+        "pad": str(write(tmp_path / "a.step", lambda o: o.addBox(-20, -15, -3, 40, 30, 10))),
+        "plate": str(write(tmp_path / "b.step", lambda o: o.addBox(-20, -25, -15, 40, 50, 15))),
+    }
+    back = {"plane": "z", "at": "7 mm"}
+    line = refusal({"paths": files, "surfaces": {"back": back, "bottom": BOTTOM}})
+    assert "touch, but no faces of them coincide" in line
+
+
 def test_conforming_cylinders_touch(tmp_path):
     """requirement: curved faces are found, only those that touch; nodes lie on the cylinders."""
     files = {

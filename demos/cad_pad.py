@@ -128,6 +128,7 @@ def labelled(text: str, solids: list[str], faces: list[str]) -> str:
     for kind, labels in (("MANIFOLD_SOLID_BREP", solids), ("ADVANCED_FACE", faces)):
         names = iter(labels)
         text = re.sub(rf"= {kind}\('[^']*'", lambda _: f"= {kind}('{next(names)}'", text)  # noqa: B023
+    text = re.sub(r"Open CASCADE STEP translator \d+\.\d+ [\d.]+", "part", text)
     return re.sub(r"'\d{4}-\d\d-\d\dT[\d:]+'", "'2026-01-01T00:00:00'", text)
 
 

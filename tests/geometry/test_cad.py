@@ -1,6 +1,7 @@
 """Bodies from CAD files: solids, faces and contact faces by all their ways, sizes, and refusals."""
 
 import math
+import random
 
 import numpy as np
 import pytest
@@ -436,6 +437,68 @@ def test_malformed_files(blocks, tmp_path):
     step[2].write_text("DBRep_DrawableShape\nCASCADE Topology V1, (c) Matra-Datavision\n7 7 7\n")
     line = refusal({"paths": blocks | {"pad": str(step[2])}, "length_unit": "1 mm"})
     assert line.startswith("geometry.paths.pad: ")
+
+
+def test_coarse_meshes(starter):
+    """requirement: elements larger than slots and thicknesses give a valid mesh."""
+    keys = assembly(starter, contact={"joint": ["lining", "plate"]})
+    for size in ("20 mm", "40 mm", "100 mm"):
+        mesh = geometry(keys, CadAssembly).build(MeshTable(size=size, grading=1.0))
+        assert scaled_jacobians(mesh).min() > 1e-3
+
+
+PLACED = "#16 = CARTESIAN_POINT('',(0.,0.,0.));"
+
+
+def test_labels_of_a_part_that_an_assembly_moves(starter, tmp_path):
+    """requirement: labels of faces are found wherever the assembly places their part."""
+    text = (starter / "disk.step").read_text() + (starter / "pad.step").read_text()
+    assert PLACED in text
+    moved = tmp_path / "pad.step"
+    labelled = (
+        (starter / "pad.step").read_text().replace("ADVANCED_FACE(''", "ADVANCED_FACE('A'", 1)
+    )
+    moved.write_text(labelled.replace(PLACED, PLACED.replace("0.,0.,0.", "0.,0.,-200.")))
+    keys = assembly(starter, contact={}, surfaces={"lining": ["A"], "plate": ["PISTON"]})
+    keys["paths"] |= {"lining": str(moved)}
+    meshes = [geometry(keys, CadAssembly).build(MeshTable(size="20 mm", grading=1.0))]
+    keys["paths"] |= {"lining": str(tmp_path / "still.step")}
+    (tmp_path / "still.step").write_text(labelled)
+    meshes.append(geometry(keys, CadAssembly).build(MeshTable(size="20 mm", grading=1.0)))
+    low, high = (mesh.points[mesh.facets_of("A")].reshape(-1, 3) for mesh in meshes)
+    assert low.min(axis=0) == pytest.approx(high.min(axis=0) - [0, 0, 0.2])
+    assert low.max(axis=0) == pytest.approx(high.max(axis=0) - [0, 0, 0.2])
+
+
+MUTATED = ((17, 3), (19, 1), (23, 2), (29, 0), (33, 1))
+"""Seeds, and kinds of malformed files."""
+
+
+@pytest.mark.parametrize(("seed", "kind"), MUTATED)
+def test_malformed_steps_end_in_one_line(seed, kind, starter, tmp_path):
+    """requirement: whatever OpenCASCADE makes of a file, there is a mesh or one line."""
+    rng, path = random.Random(seed), tmp_path / "pad.step"
+    lines = (starter / "pad.step").read_text().split(";\n")
+    for _ in range(5):
+        at, other = (rng.randrange(20, len(lines) - 3) for _ in range(2))
+        number, _, entity = lines[at].partition("=")
+        lines[at] = (
+            f"{number}={lines[other].partition('=')[2]}",
+            "",
+            lines[at].replace("0.", "1.E9", 1),
+            f"{number}={entity.replace('#', '#1', 1)}",
+        )[kind]
+    path.write_text(";\n".join(lines))
+    keys = assembly(starter, surfaces={"disk": ["DISK_INSIDE"]}, contact={})
+    keys["paths"] |= {"lining": str(path), "plate": str(path)}
+    try:
+        mesh = geometry(keys, CadAssembly).build(MeshTable(size="20 mm"))
+    except CaseError as error:
+        (line,) = error.faults
+        assert "\n" not in line
+        assert line.startswith(("geometry.", "mesh.size: "))
+    else:
+        assert scaled_jacobians(mesh).min() > 0
 
 
 def test_a_crash_or_a_hang_ends_in_one_line(blocks, monkeypatch):

@@ -60,7 +60,7 @@ def _labelled(key: str, label: str, among: list[CadBody]) -> list[CadFace]:
     found = [face for face in every if face.label == label]
     if not found:
         labels = sorted({face.label for face in every} - {""})
-        have = f"labels: {listed(labels)}" if labels else "none of them has a label in the file"
+        have = f"labels: {listed(labels)}" if labels else "none of them has a label"
         raise CadError(
             f"{key}: no face labelled {label!r}; {_counted(among)}; {have}; a face is also named "
             'by { point = ["0 mm", "0 mm", "5 mm"] } or { plane = "z", at = "5 mm" }'

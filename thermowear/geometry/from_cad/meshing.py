@@ -10,16 +10,13 @@ from ..mesh.tagged import jacobians
 from .request import CadError
 from .solids import UNIT, CadBody, CadFace, in_mm
 
-_TETRAHEDRA, _TRIANGLE = {1: 4, 2: 11}, 9
-"""Elements of gmsh: tetrahedra by order, quadratic triangles."""
-_ATTEMPTS = ((1, 0.3), (1, 0.6), (10, 0.3))
-"""Algorithms of gmsh (Delaunay, HXT), and the quality up to which it optimises cells."""
-_POOR = 0.05
-"""Smallest scaled Jacobian below which other algorithms are tried."""
-_GOOD, _LEAST = 0.1, 1e-3
-"""Scaled Jacobian below which curved cells are improved, and the least that is accepted."""
-_WORSE = 0.7
-"""Smallest scaled Jacobian of curved cells, relative to that of straight ones, to be improved."""
+_TETRAHEDRON, _TRIANGLE = 11, 9
+"""Quadratic elements of gmsh."""
+_ATTEMPTS = ((6, 0.3, 1.0), (5, 0.6, 1.0), (6, 0.3, 0.9), (6, 0.3, 0.8), (5, 0.6, 0.7))
+"""Algorithms of gmsh on faces (frontal, Delaunay), quality that it aims at for cells, and factor of
+their sizes: tried until there are no poor cells."""
+_POOR, _LEAST = 0.05, 1e-3
+"""Scaled Jacobian of poor cells, and the least that is accepted."""
 _PLACES = 4
 """Points along each side of a cell at which its Jacobian is evaluated."""
 
@@ -34,20 +31,18 @@ def make_mesh(gmsh, bodies: Sequence[CadBody]) -> None:
     """
     mesh = gmsh.model.mesh
     try:
-        straight = _straight_mesh(gmsh, bodies)
-        mesh.setOrder(2)
-        if _least(gmsh, bodies, 2) < min(_GOOD, _WORSE * straight):
+        if _best_mesh(gmsh, bodies) < _POOR:
             mesh.optimize("HighOrderElastic")
-        if _least(gmsh, bodies, 2) < _LEAST:
+        if _least(gmsh, bodies) < _LEAST:
             mesh.optimize("HighOrder")  # ends the process where it fails
     except CadError:
         raise
     except Exception as trouble:  # gmsh raises nothing more specific
         raise CadError(f"mesh.size: gmsh could not mesh the bodies: {trouble}") from None
     for body in bodies:
-        found = _quality(gmsh, body, 2)
+        found = _quality(gmsh, body)
         if found.min() < _LEAST:
-            where = _places(gmsh, body, 2)[int(found.argmin())].mean(axis=0)
+            where = _places(gmsh, body)[int(found.argmin())].mean(axis=0)
             raise CadError(
                 f"mesh.size: {np.count_nonzero(found < _LEAST)} of {len(found)} curved cells of "
                 f"{body.name!r} are tangled (smallest scaled Jacobian {found.min():.2g}), one at "
@@ -55,9 +50,9 @@ def make_mesh(gmsh, bodies: Sequence[CadBody]) -> None:
             )
 
 
-def _straight_mesh(gmsh, bodies: Sequence[CadBody]) -> float:
-    """Make the mesh of straight cells with the best algorithm; its smallest scaled Jacobian."""
-    found: dict[tuple[int, float], float] = {}
+def _best_mesh(gmsh, bodies: Sequence[CadBody]) -> float:
+    """Mesh the bodies in the ways of `_ATTEMPTS`; the smallest scaled Jacobian of the best one."""
+    found: dict[tuple[int, float, float], float] = {}
     for attempt in _ATTEMPTS:
         found[attempt] = _generated(gmsh, bodies, *attempt)
         if found[attempt] >= _POOR:
@@ -66,34 +61,37 @@ def _straight_mesh(gmsh, bodies: Sequence[CadBody]) -> float:
     return _generated(gmsh, bodies, *best)
 
 
-def _generated(gmsh, bodies: Sequence[CadBody], algorithm: int, threshold: float) -> float:
-    """Make the mesh of straight cells; its smallest scaled Jacobian."""
-    gmsh.option.setNumber("Mesh.Algorithm3D", algorithm)
-    gmsh.option.setNumber("Mesh.OptimizeThreshold", threshold)
+def _generated(
+    gmsh, bodies: Sequence[CadBody], algorithm: int, quality: float, factor: float
+) -> float:
+    """Mesh the bodies with quadratic cells; their smallest scaled Jacobian."""
+    gmsh.option.setNumber("Mesh.Algorithm", algorithm)
+    gmsh.option.setNumber("Mesh.OptimizeThreshold", quality)
+    gmsh.option.setNumber("Mesh.MeshSizeFactor", factor)
     gmsh.model.mesh.clear()
     gmsh.model.mesh.generate(3)
-    return _least(gmsh, bodies, 1)
+    gmsh.model.mesh.setOrder(2)
+    return _least(gmsh, bodies)
 
 
-def _least(gmsh, bodies: Sequence[CadBody], order: int) -> float:
+def _least(gmsh, bodies: Sequence[CadBody]) -> float:
     """Smallest scaled Jacobian of all cells."""
-    return float(min(_quality(gmsh, body, order).min() for body in bodies))
+    return float(min(_quality(gmsh, body).min() for body in bodies))
 
 
-def _quality(gmsh, body: CadBody, order: int) -> np.ndarray:
+def _quality(gmsh, body: CadBody) -> np.ndarray:
     """Smallest scaled Jacobian of each cell of a body, shape (n,)."""
-    places = _places(gmsh, body, order)
+    places = _places(gmsh, body)
     if not len(places):
         raise CadError(f"mesh.size: gmsh could not mesh {body.name!r} with tetrahedra")
-    least, most, mean = jacobians("tetrahedron", order, places, _PLACES)
+    least, most, mean = jacobians("tetrahedron", 2, places, _PLACES)
     return np.nan_to_num(np.where(mean < 0, -most, least), nan=-1.0)
 
 
-def _places(gmsh, body: CadBody, order: int) -> np.ndarray:
-    """Nodes of the cells of a body, shape (n, 4 or 10, 3) [mm]."""
-    kind, count = _TETRAHEDRA[order], (4, 10)[order - 1]
-    found = [gmsh.model.mesh.getElementsByType(kind, s.tag)[1] for s in body.solids]
-    cells = np.concatenate(found).astype(np.int64).reshape(-1, count)
+def _places(gmsh, body: CadBody) -> np.ndarray:
+    """Nodes of the cells of a body, shape (n, 10, 3) [mm]."""
+    found = [gmsh.model.mesh.getElementsByType(_TETRAHEDRON, s.tag)[1] for s in body.solids]
+    cells = np.concatenate(found).astype(np.int64).reshape(-1, 10)
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     return coordinates.reshape(-1, 3)[_rows(tags)[cells]]
 
@@ -128,7 +126,7 @@ def mesh_arrays(
     arrays = {"points": UNIT * coordinates.reshape(-1, 3)}
     for b, body in enumerate(bodies):
         arrays[f"cells_{b}"], of_solid = _elements(
-            gmsh, _TETRAHEDRA[2], row, [[solid.tag] for solid in body.solids]
+            gmsh, _TETRAHEDRON, row, [[solid.tag] for solid in body.solids]
         )
         arrays |= {f"solid_{b}_{s}": found for s, found in enumerate(of_solid)}
         own = [surfaces[name].get(body.name, ()) for name in surfaces]

@@ -95,12 +95,12 @@ def _meshed(request: CadRequest) -> MeshContents:
     blocks = []
     for b, body in enumerate(request.bodies):
         cells = arrays[f"cells_{b}"]
-        sets = {
-            name: arrays[f"solid_{b}_{s}"]
-            for s, names in enumerate(contents["solids"][b])
-            for name in names
-        }
-        blocks.append(CellBlock("tetra10", cells, sets | {body.name: np.arange(len(cells))}, b))
+        sets = {body.name: np.arange(len(cells))}
+        for s, names in enumerate(contents["solids"][b]):
+            for name in set(names) - {body.name}:  # several solids may have one label
+                known = sets.get(name, np.empty(0, dtype=np.int64))
+                sets[name] = np.concatenate([known, arrays[f"solid_{b}_{s}"]])
+        blocks.append(CellBlock("tetra10", cells, sets, b))
         on_body = {
             name: arrays[f"surface_{b}_{k}"]
             for k, name in enumerate(contents["surfaces"])

@@ -101,6 +101,9 @@ def main(task: str, memory: str, seconds: str) -> int:
         reason = "geometry.path: meshing the CAD files exceeds the memory limit"
     except CadError as error:
         reason = " ".join(str(error).split())
+    except Exception as error:  # gmsh and readers of malformed files raise any exception
+        reason = f"{request.bodies[0].key}: the CAD files cannot be meshed: "
+        reason += " ".join(str(error).split()) or type(error).__name__
     else:
         out.write(packed.getbuffer())
         out.close()

@@ -21,6 +21,8 @@ _PER_TURN = 12
 """Least number of elements round a circle."""
 _LEAST = 0.3
 """Smallest element size relative to that at the edges of the contact."""
+_PER_WIDTH = 1.5
+"""Largest element size at a face relative to its width."""
 _SPACING = 0.7
 """Distance of the points from which distances are measured, relative to the size there."""
 
@@ -71,6 +73,7 @@ def set_sizes(gmsh, bodies: Sequence[CadBody], contacts: Sequence[Refinement]) -
             limits += [_within(fields, field, tags, _boundary(gmsh, tags)) for field in own]
             least.append(edge)
     for body in bodies:
+        limits += _at_narrow_faces(gmsh, body)
         limits.append(fields.add("Constant"))
         fields.setNumber(limits[-1], "VIn", body.element_sizes[0])
         fields.setNumbers(limits[-1], "VolumesList", [solid.tag for solid in body.solids])
@@ -84,11 +87,34 @@ def set_sizes(gmsh, bodies: Sequence[CadBody], contacts: Sequence[Refinement]) -
         "MeshSizeFromPoints": 0,
         "MeshSizeExtendFromBoundary": 0,
         "MeshSizeFromCurvature": _PER_TURN,
-        "Algorithm": 6,
+        "Algorithm3D": 1,
         "Optimize": 1,
     }
     for name, value in settings.items():
         gmsh.option.setNumber(f"Mesh.{name}", value)
+
+
+def _at_narrow_faces(gmsh, body: CadBody) -> list[int]:
+    """Fields that make elements smaller at faces narrower than they would be.
+
+    Elements that are much longer than a face is wide have bad cells behind them. Faces of similar
+    widths have a field in common.
+    """
+    fields, tags = gmsh.model.mesh.field, [solid.tag for solid in body.solids]
+    size, groups = body.element_sizes[0], dict[int, list[CadFace]]()
+    for face in body.faces:
+        edges = gmsh.model.getBoundary([(2, face.tag)], combined=False, oriented=False)
+        around = sum(gmsh.model.occ.getMass(1, tag) for _, tag in edges)
+        near = _PER_WIDTH * 2 * face.area / around
+        if near < size:
+            groups.setdefault(math.floor(2 * math.log2(near / size)), []).append(face)
+    result = []
+    for step, faces in groups.items():
+        near = size * 2 ** (step / 2)
+        of_faces = [face.tag for face in faces]
+        field = _towards(fields, "SurfacesList", of_faces, near, size, _extent(faces))
+        result.append(_within(fields, field, tags, _boundary(gmsh, tags)))
+    return result
 
 
 def _towards(fields, key: str, entities: list[int], near: float, far: float, extent: float) -> int:

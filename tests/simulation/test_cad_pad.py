@@ -12,8 +12,9 @@ from thermowear.app.cli import main
 from thermowear.case import starters
 
 from ..cad_parts import cad_pad
+from ..test_parallel import same_on_two_ranks
+from .cad_pad_on_ranks import COARSE, columns
 
-COARSE = ("mesh.size=18 mm", "mesh.contact_size=9 mm", "mesh.grading=1.0")
 FORCE, FRICTION, SPEED, K = 900.0, 0.38, 10.0, 3e-14
 
 
@@ -28,12 +29,23 @@ def case(folder, *changes):
     return tw.load(folder / "case.toml", overrides=(*COARSE, *changes))
 
 
-def test_hot_steady_state(folder):
+@pytest.fixture(scope="module")
+def steady(folder):
+    return tw.run(case(folder))
+
+
+def test_the_same_on_two_ranks(folder, steady, tmp_path):
+    """requirement: two ranks give the serial results."""
+    module = "tests.simulation.cad_pad_on_ranks"
+    same_on_two_ranks(module, tmp_path, columns(steady), folder / "case.toml")
+
+
+def test_hot_steady_state(steady):
     """
     requirement: pressure times speed is even over both halves of the lining, the moment of friction
     and the heat follow from it, and force, moment and heat balance.
     """
-    result = tw.run(case(folder))
+    result = steady
     s = result.summary
     face = result.interface
     r = np.hypot(face.x, face.y)

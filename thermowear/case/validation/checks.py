@@ -14,7 +14,7 @@ from ..values.section import Fault
 from . import analyses, conditions, materials
 from .layer_wear import layer_wear
 from .mesh_sizes import mesh_sizes
-from .part_wear import part_wear
+from .part_wear import note_default_per, part_wear
 
 _SLIDING = ("steady", "transient", "reciprocating")
 """Analyses of wear by sliding."""
@@ -40,12 +40,7 @@ def check(case: Case) -> None:
             "friction, which twists the whole ring, is left out (its heat and wear are not)"
         )
     for name, law in case.wear.laws.items():
-        if law.rate is None and "per" not in law.model_fields_set and friction > 0.0:
-            note(
-                f"wear.{name}.per is left out: the coefficient multiplies mu p (friction stress); "
-                'Archard\'s k multiplies p: with per = "pressure" it wears '
-                f"{friction**-law.pressure_exponent:.3g} times as fast"
-            )
+        note_default_per(name, law, friction)
 
 
 def _names(case: Case) -> Iterator[Fault]:
@@ -203,6 +198,7 @@ _CHECKS = (
     _model,
     mesh_sizes,
     materials.cell_sets,
+    materials.like_alone,
     materials.materials,
     materials.locking,
     conditions.holder,

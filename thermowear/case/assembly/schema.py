@@ -26,6 +26,10 @@ from .tables import (
 )
 
 
+_THERMAL = ("conductance", "gap_conductance", "partition")
+"""Keys of ``heat`` that contacts share."""
+
+
 class AssemblyCase(Section):
     """Complete case of several bodies.
 
@@ -77,8 +81,8 @@ class AssemblyCase(Section):
         if not table.tie:
             shared = {key: getattr(self.contact, key) for key in _set(self.contact)}
         if self.heat is not None and not table.tie:
-            thermal = _set(self.heat) & {"conductance", "gap_conductance", "partition"}
-            shared |= {key: getattr(self.heat, key) for key in thermal}
+            thermal = {key: getattr(self.heat, key) for key in _THERMAL}
+            shared |= {key: value for key, value in thermal.items() if value is not None}
         own = {key: getattr(table, key) for key in _set(table)}
         between = {"between": table.between or self.geometry.contacts.get(name)}
         return AssemblyContactTable.model_construct(**(shared | own | between))

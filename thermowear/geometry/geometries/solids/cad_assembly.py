@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import cached_property
 from typing import Literal
 
 from pydantic import Field, PrivateAttr, model_validator
@@ -55,7 +56,6 @@ class CadAssembly(AssemblyFile):
     surface_names: dict[str, CadSurfaces] = Field(  # type: ignore[assignment]
         alias="surfaces", default={}
     )
-    _touching: dict[str, TouchRequest] | None = PrivateAttr(default=None)
     _sliding: tuple[tuple[str, str], ...] = PrivateAttr(default=())
 
     @model_validator(mode="after")
@@ -87,30 +87,26 @@ class CadAssembly(AssemblyFile):
 
     @property
     def contacts(self) -> dict[str, tuple[str, str]]:
-        return {name: touch.names for name, touch in self._touches().items()}
+        return {name: touch.names for name, touch in self.touches.items()}
 
-    def _touches(self) -> dict[str, TouchRequest]:
+    @cached_property
+    def touches(self) -> dict[str, TouchRequest]:
         """Pairs of bodies that touch, by the name of the contact; reads the files for "auto"."""
-        if self._touching is None:
-            key = "geometry.contact"
-            if self.contact == "auto":
-                request = CadRequest(
-                    body_requests(self, None), (), tolerance=self.contact_tolerance
-                )
-                self._touching = {
-                    f"{a}-{b}": TouchRequest((a, b), (f"{a}-{b}", f"{b}-{a}"), key)
-                    for a, b in touching_bodies(request)
-                }
-            else:
-                self._touching = {
-                    name: TouchRequest((a, b), (f"{a}_{name}", f"{b}_{name}"), f"{key}.{name}")
-                    for name, (a, b) in self.contact.items()
-                }
-        return self._touching
+        key = "geometry.contact"
+        if self.contact == "auto":
+            request = CadRequest(body_requests(self, None), (), tolerance=self.contact_tolerance)
+            return {
+                f"{a}-{b}": TouchRequest((a, b), (f"{a}-{b}", f"{b}-{a}"), key)
+                for a, b in touching_bodies(request)
+            }
+        return {
+            name: TouchRequest((a, b), (f"{a}_{name}", f"{b}_{name}"), f"{key}.{name}")
+            for name, (a, b) in self.contact.items()
+        }
 
     def _surfaces_of(self) -> Mapping[str, Iterable[str]]:
         found = {body: list(self.surface_names.get(body, ())) for body in self.bodies}
-        for touch in self._touches().values():
+        for touch in self.touches.values():
             for body, name in zip(touch.bodies, touch.names, strict=True):
                 found[body].append(name)
         return found
@@ -140,7 +136,7 @@ class CadAssembly(AssemblyFile):
             CadRequest(
                 bodies=body_requests(self, mesh),
                 surfaces=surfaces,
-                touching=tuple(self._touches().values()),
+                touching=tuple(self.touches.values()),
                 faces=self._sliding,
                 tolerance=self.contact_tolerance,
             )

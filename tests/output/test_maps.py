@@ -122,3 +122,22 @@ def test_friction_in_space_is_drawn_with_its_direction(tmp_path):
     draw_friction_maps(tmp_path)
     image = mpimg.imread(tmp_path / "friction.png")[..., :3]
     assert ((image.max(axis=2) - image.min(axis=2)) > 0.1).mean() > 0.2
+
+
+@pytest.mark.parametrize("graded", [False, True])
+def test_slots_are_left_out(graded):
+    """requirement: nothing is drawn across a slot that separates the points of a face."""
+    along = 30 * GRADED if graded else np.linspace(0.0, 30.0, 31)
+    x, y = grid(np.linspace(0.0, 40.0, 81), np.concatenate([along, 36 + along]))
+    steps = np.gradient(along)
+    weights = np.tile(np.concatenate([steps, steps]) * 0.5, 81)
+    assert areas(triangulated(x, y)).sum() == pytest.approx(40 * 66, rel=1e-6)
+    assert areas(triangulated(x, y, weights)).sum() == pytest.approx(2 * 40 * 30, rel=0.02)
+
+
+def test_small_weights_tear_no_holes():
+    """requirement: points of small pieces of facets do not take triangles out of a face."""
+    rng = np.random.default_rng(5)
+    x, y = grid(np.linspace(0.0, 40.0, 41), np.linspace(0.0, 40.0, 41))
+    weights = np.where(rng.random(len(x)) < 0.1, 1e-3, 1.0)
+    assert areas(triangulated(x, y, weights)).sum() == pytest.approx(40 * 40, rel=1e-9)

@@ -22,6 +22,7 @@ from .cases.heat.instability import half_plane_instability, sliding_rod
 from .cases.heat.moving_band import moving_band
 from .cases.heat.transient_heat import braking_stop, step_flux
 from .cases.steady.annular_punch import annular_punch, running_in
+from .cases.steady.cad_part import cad_part
 from .cases.steady.finite_elements import optimal_shape
 from .cases.steady.minimality import minimality
 from .cases.steady.ring_in_space import ring_3d, ring_3d_whole
@@ -46,7 +47,7 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     minimality, step_flux, braking_stop, sliding_rod, half_plane_instability, optimal_shape,
     ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face, coating, coated_bush,
     glued_blocks, pad_disk_pad, clutch_pack, face_seal, two_shoes, floating_caliper,
-    layer_instability,
+    layer_instability, cad_part,
 ), ())  # fmt: skip
 CASES = {
     id: identified(id, case, *runs)

@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 from ...errors import CaseError
 from ...laws.time_course import LoadHistories
 from ..values.section import Number, Section
+from ..values.units import Length
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
 from .contact import ContactTable, InterfaceTable
@@ -29,10 +30,12 @@ Grading = Annotated[Number, Field(ge=0.05, le=1.0)]
 
 
 class FaceMesh(Section):
-    """Mesh of the contact face of one body where it differs from the default."""
+    """Mesh of one body where it differs from the default."""
 
     elements: Elements | None = None
     grading: Grading | None = None
+    size: Length | None = None
+    contact_size: Length | None = None
 
 
 class MeshTable(Section):
@@ -45,7 +48,12 @@ class MeshTable(Section):
     elements : int
         Number of elements along the contact.
     grading : float
-        Size ratio of neighbouring elements towards the contact edges.
+        Size ratio of neighbouring elements towards the contact edges; of bodies from CAD: size of
+        the elements at the contact edges relative to those inside.
+    size : float or None
+        Largest element size of bodies from CAD; None: a small part of the size of each body [m].
+    contact_size : float or None
+        Element size on contact faces of bodies from CAD; None: half of the largest one [m].
     solver : str
         Linear solver of bodies in space: ``auto`` (by size), ``direct`` or ``multigrid``.
     bodies : dict of str to FaceMesh
@@ -55,6 +63,8 @@ class MeshTable(Section):
     degree: Annotated[int, Field(ge=1, le=10, strict=True)] = 8
     elements: Elements = 12
     grading: Grading = 0.3
+    size: Length | None = None
+    contact_size: Length | None = None
     solver: Literal["auto", "direct", "multigrid"] = "auto"
     bodies: dict[str, FaceMesh] = {}
 
@@ -62,6 +72,11 @@ class MeshTable(Section):
         """Number of elements along the contact, and grading, of one body."""
         own = self.bodies.get(body, FaceMesh())
         return own.elements or self.elements, own.grading or self.grading
+
+    def sizes(self, body: str) -> tuple[float | None, float | None]:
+        """Largest element size of one body, and that on its contact faces [m]."""
+        own = self.bodies.get(body, FaceMesh())
+        return own.size or self.size, own.contact_size or self.contact_size
 
 
 def check_size(mesh, degree: int) -> None:

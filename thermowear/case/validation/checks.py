@@ -13,6 +13,7 @@ from ..tables.schema import Case
 from ..values.section import Fault
 from . import analyses, conditions, materials
 from .layer_wear import layer_wear
+from .mesh_sizes import mesh_sizes
 from .part_wear import note_default_per, part_wear
 
 _SLIDING = ("steady", "transient", "reciprocating")
@@ -195,6 +196,7 @@ def _symmetry(case: Case) -> Iterator[Fault]:
 _CHECKS = (
     _names,
     _model,
+    mesh_sizes,
     materials.cell_sets,
     materials.like_alone,
     materials.materials,

@@ -30,6 +30,10 @@ _LARGEST_ANGLE = 100.0
 _SHORT = 0.1
 """Length of a boundary edge relative to the face, up to which a triangle of any angle is drawn."""
 
+_GAP, _LONG, _ROUNDS = 0.8, 6.0, 4
+"""Area of a triangle relative to that of its corners above which it lies across a gap; length of a
+side relative to the root of a point's area, and number of triangles beside it that do so, too."""
+
 
 def is_surface(folder: Path) -> bool:
     """Test whether the contact points of a results folder form a surface, not a line."""
@@ -108,7 +112,7 @@ def _statuses(axis: Axes, triangles: Triangulation, data: tables.TableColumns) -
 
 def _draw(path: Path, data: tables.TableColumns, names: list[str], title: str = "") -> None:
     """Draw a map of each quantity, two per row."""
-    triangles = triangulated(data.drawn("x"), data.drawn("y"))
+    triangles = triangulated(*(data.drawn(name) for name in ("x", "y", "weight")))
     with _maps(path, triangles, len(names), title) as (figure, axes):
         for axis, name in zip(axes.flat, names, strict=False):
             _map(axis, triangles, data, name)
@@ -141,16 +145,26 @@ def draw_colors(axis: Axes, triangles: Triangulation, values: np.ndarray, name: 
     return axis.tripcolor(triangles, values, shading="gouraud", cmap=color_map(name), **options)
 
 
-def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:
-    """Triangulate points of a face that need not be convex.
+def triangulated(x: np.ndarray, y: np.ndarray, weights: np.ndarray | None = None) -> Triangulation:
+    """Triangulate points of a face that need not be convex, nor in one piece.
 
     The Delaunay triangulation fills the convex hull. Triangles at the boundary of a grid of points
     have an angle of 90° opposite to the boundary; triangles outside a concave boundary are much
     flatter, and are masked unless they are small, as between scattered points at a round edge.
+    Triangles across a slot are larger than the area of their points.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (n,)
+    weights : ndarray, shape (n,), optional
+        Area of each point.
     """
     result = Triangulation(x, y)
     corners = np.stack([x, y], axis=1)[result.triangles]
     neighbors, hidden = result.neighbors.copy(), np.zeros(len(corners), dtype=bool)
+    if weights is not None:
+        hidden |= _across_gaps(result, corners, weights)
+        neighbors[np.isin(neighbors, np.flatnonzero(hidden))] = -1
     # side k of a triangle goes from corner k to the next; the remaining corner is opposite
     to_first, to_second = (corners - np.roll(corners, shift, axis=1) for shift in (1, -1))
     opposite = np.roll(_angles(-to_second, -to_first), -2, axis=1)
@@ -163,6 +177,26 @@ def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:
             return result
         hidden |= flat
         neighbors[np.isin(neighbors, np.flatnonzero(flat))] = -1
+
+
+def _across_gaps(triangles: Triangulation, corners: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Mask of triangles across gaps: larger than the area of their corners, or thin beside those.
+
+    Areas are averaged over neighbours, as points of small pieces of facets have very small ones.
+    """
+    nodes = triangles.triangles
+    for _ in range(2):
+        of_each = np.repeat(weights[nodes].mean(axis=1), 3)
+        weights = np.bincount(nodes.ravel(), of_each, len(weights))
+        weights = weights / np.maximum(np.bincount(nodes.ravel(), minlength=len(weights)), 1)
+    mean = weights[nodes].mean(axis=1)
+    (a, b), (c, d) = (corners[:, 1:] - corners[:, :1]).transpose(1, 2, 0)
+    found = np.abs(a * d - b * c) / 2 > _GAP * 3 * mean
+    lengths = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    across = (triangles.neighbors >= 0) & (lengths > _LONG * np.sqrt(mean)[:, None])
+    for _ in range(_ROUNDS):
+        found |= (across & found[triangles.neighbors]).any(axis=1)
+    return found
 
 
 def _angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -138,6 +138,12 @@ def _mesh(chosen) -> int:
     check_ending(chosen.output)
     case = load(chosen.case, tuple(chosen.overrides))
     _check_absent(chosen.output, chosen.overwrite)
+    if case.mesh.accuracy is not None:
+        from ..simulation.from_case import with_accurate_mesh
+        from .workers import start_petsc
+
+        start_petsc()
+        case = with_accurate_mesh(case)
     mesh = case.tagged_mesh()
     write_mesh(mesh, chosen.output)
     print(f"wrote {chosen.output}: {count_cells(mesh)} cells, {len(mesh.points)} points")

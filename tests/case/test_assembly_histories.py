@@ -39,7 +39,7 @@ def pulled(key, values):
         ),
         (
             [TIMED, f"{PISTON}.history={FORCE}", f"{PISTON}.tangential_force='3 N'"],
-            f"{PISTON}.tangential_force: cannot be combined with {PISTON}.history",
+            f"{PISTON}.tangential_force: has no effect in an axisymmetric model",
         ),
         (
             [TIMED, f"contacts.left.friction_history={RAMP}", "contact.friction=0", *PER_PRESSURE],

@@ -39,6 +39,20 @@ def test_linings_have_materials_of_their_own():
     assert plain.located_material("left_shoe_lining")[1].young_modulus == 70e9
 
 
+def test_the_heat_of_a_contact_goes_into_the_first_face_that_is_named():
+    """requirement: the partition refers to the faces as given, also with the drum first."""
+    faces, others = (one.faces for one in model_of(tw.load(tables(SHOES))).interfaces)
+    for between in (faces, faces[::-1]):
+        contacts = {
+            "right_shoe": {"between": list(between), "partition": 0.8},
+            "left_shoe": {"between": list(others)},
+        }
+        first, other = model_of(tw.load(tables(SHOES, {"contacts": contacts}))).interfaces
+        assert first.faces == faces
+        assert first.partition == pytest.approx(0.8 if between == faces else 0.2, rel=1e-12)
+        assert other.partition == 0.05
+
+
 def test_contacts_are_those_of_the_geometry():
     """requirement: each shoe touches the drum, which is body 2, without a table of contacts."""
     model = model_of(tw.load(tables(SHOES)))

@@ -263,7 +263,10 @@ FAULTS = {
     ),
     "wrong unit": ({"geometry.length_unit": "1 um"}, "holders.arm.force: a mean pressure of"),
     "wrong unit of a way": (
-        {"holders.arm": {"surface": "back", "approach": "20 mm"}},
+        {
+            "holders.arm": {"surface": "back", "approach": "20 mm"},
+            "analysis": {"type": "initial"},
+        },
         "holders.arm.approach: 20 mm is",
     ),
     "unknown set": (
@@ -296,12 +299,11 @@ def test_bodies_apart(tmp_path, moved, expected):
 
 def test_glued_faces_touch(tmp_path):
     """requirement: glued faces with a gap are refused."""
-    case = two_solids(tmp_path, 1.0)
-    case["contacts"]["glue"] = {"between": ["face", "track"], "tie": True}
-    del case["contacts"]["rubbing"], case["wear"]
-    case["analysis"] = {"type": "initial"}
+    case = tw.load(two_solids(tmp_path, 1.0))
+    glued = case.contacts["rubbing"].model_copy(update={"tie": True})
+    case = case.model_copy(update={"contacts": {"glue": glued}})
     with pytest.raises(tw.CaseError, match=r"^contacts\.glue\.between: the glued faces lie 1 mm"):
-        tw.load(case).tagged_mesh()
+        case.tagged_mesh()
 
 
 def two_solids(folder, moved):

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import functools
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import thermowear as tw
 from thermowear.simulation.analyses.run import run
+from thermowear.simulation.cycles.stroke import strokes
 from thermowear.simulation.from_case import analysis_of, model_of
 
 from ..case.starter import RECIPROCATING, changed, tables
@@ -163,13 +165,25 @@ def test_it_does_not_matter_which_bodies_move():
 
 
 def test_a_contact_at_rest_and_a_stroke_too_long():
-    """requirement: bodies that move alike, and a punch that leaves the strip, are refused."""
+    """requirement: bodies at rest or alike, and a punch that leaves the strip, are refused."""
     both = {"motions": {"upper": SLIDING, "strip": SLIDING}}
+    alone = {"motions": {"upper": SLIDING}}
+    with pytest.raises(tw.CaseError, match=r"contacts\.lower: its bodies do not slide"):
+        tw.run(tw.load(changed(CASE, alone)))
     with pytest.raises(tw.CaseError, match=r"contacts\.upper: its bodies do not slide"):
         computed(both)
     long = {"motions.strip.amplitude": "6 mm"}
     with pytest.raises(tw.CaseError, match=r"contacts\.upper: .* of upper_face leaves strip_upper"):
         computed(long)
+
+
+def test_bodies_on_both_sides_of_a_slower_one():
+    """requirement: strokes have the sense of the first body over the second one."""
+    faster = {"amplitude": "8 mm", "frequency": "2 Hz"}
+    case = tw.load(changed(CASE, {"motions.upper": faster}))
+    system, settings = SimpleNamespace(model=model_of(case)), analysis_of(case)
+    amplitudes = strokes(system, settings) * settings.amplitude
+    assert amplitudes == pytest.approx([3e-3, -5e-3], rel=1e-12)
 
 
 def test_bodies_with_different_strokes():

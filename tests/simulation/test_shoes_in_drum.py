@@ -50,6 +50,41 @@ def test_shoes_exchange_their_roles_with_the_sense_of_rotation(hot):
             )
 
 
+def turned(name: str, clockwise: float) -> dict:
+    """Tables of a starter with shoes, turned about the axis of the drum [deg]."""
+    case = tables(name, COARSE | {"motions.drum.angular_velocity": SENSES["right_shoe"]})
+    c, s = math.cos(math.radians(clockwise)), math.sin(math.radians(clockwise))
+
+    def moved(x: float, y: float) -> list[float]:
+        return [c * x + s * y, c * y - s * x]
+
+    def place(given: list[str]) -> list[str]:
+        return [f"{value!r} mm" for value in moved(*(float(v.removesuffix(" mm")) for v in given))]
+
+    for shoe in case["geometry"]["shoes"].values():
+        for key in ("arc_start", "arc_end"):
+            shoe[key] = f"{float(shoe[key].removesuffix(' deg')) + clockwise!r} deg"
+        shoe["pivot"] = place(shoe["pivot"])
+    for holder in case["holders"].values():
+        holder |= {"direction": moved(*holder["direction"]), "point": place(holder["point"])}
+    return case
+
+
+def test_a_brake_turned_in_the_frame_is_the_same():
+    """requirement: pressures, temperatures, shapes and torques do not depend on the axes."""
+    _, expected = steady("right_shoe", True)
+    found = tw.run(tw.load(turned(SHOES, 35.0)))
+    for name, torque in torques(expected).items():
+        assert torques(found)[name] == pytest.approx(torque, rel=1e-8)
+    for name in ("pressure", "temperature_1", "temperature_2", "shape"):
+        ours, theirs = getattr(found.interface, name), getattr(expected.interface, name)
+        scale = 1e-8 * np.abs(theirs).max()
+        np.testing.assert_allclose(ours, theirs, rtol=0, atol=scale, err_msg=name)
+    for name, body in expected.summary["bodies"].items():
+        ours = found.summary["bodies"][name]["contact_heat_W"]
+        assert ours == pytest.approx(body["contact_heat_W"], rel=1e-8)
+
+
 @pytest.mark.parametrize("leading", SENSES)
 def test_pressures_are_those_of_the_long_shoe_law(leading):
     """requirement: p = p_a sin θ, θ from the pivot; 366 N m and 162 N m."""

@@ -106,6 +106,7 @@ def test_thick_layers_are_half_planes():
     assert thin.symmetric < 0.01 * one.critical_speed < one.critical_speed < thin.antisymmetric
 
 
+HELD = {"surface": "right_bottom", "free": []}
 HISTORY = {"time": ["0 s", "1 s"], "force": ["1 N", "2 N"]}
 
 
@@ -116,7 +117,7 @@ HISTORY = {"time": ["0 s", "1 s"], "force": ["1 N", "2 N"]}
         ({"motions": {}}, "motions: missing; "),
         ({"contact": {"friction": 0.0}}, "contacts: have no friction"),
         (
-            {"holders": {"left": {"surface": "left_top", "history": HISTORY}}},
+            {"holders": {"left": {"surface": "left_top", "history": HISTORY}, "right": HELD}},
             "holders.left.history: requires a transient analysis, not stability",
         ),
         ({"contact": {"friction": "0.3 + v/(1 m/s)"}}, "contacts.left.friction: depends on v"),

@@ -66,6 +66,7 @@ _MESSAGES = {
     "model_attributes_type": "must be a table",
     "dict_type": "must be a table",
     "tuple_type": "must be a list",
+    "too_long": "must have at most {max_length} values",
 }
 
 _ANALYSES = "'initial', 'steady', 'transient', 'fretting', 'reciprocating', 'stability'"

@@ -39,11 +39,11 @@ def relative_motion(first: Motion | None, second: Motion | None, axisymmetric: b
             "motions: two bodies that slide on each other must both translate, or both rotate "
             "about the axis of the model, with one history"
         )
-    return replace(
-        other,
-        velocity=_sum(one.velocity, other.velocity),
-        angular_velocity=_sum(one.angular_velocity, other.angular_velocity),
-    )
+    velocity = _sum(one.velocity, other.velocity)
+    angular_velocity = _sum(one.angular_velocity, other.angular_velocity)
+    if not velocity and not angular_velocity:  # both move alike
+        return Motion()
+    return replace(other, velocity=velocity, angular_velocity=angular_velocity)
 
 
 def _moving(motion: Motion, axisymmetric: bool) -> Motion:

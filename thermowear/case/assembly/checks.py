@@ -9,14 +9,15 @@ import re
 from collections.abc import Iterator
 
 from ...errors import CaseError
-from ...laws.motions import spans
 from ..values.section import Fault
+from . import holders
 from .schema import AssemblyCase
 from .stability import check_stability
-from .tables import SUPPORTS, AssemblyHolderTable
+from .tables import SUPPORTS
 
 _NAME, _AT = re.compile(r"[\w-]+"), "_at_"
 """Names of contacts are parts of file names; a time follows the latter."""
+_THERMAL = ("conductance", "gap_conductance", "partition")
 _ON_SURFACES = ("cooling", "temperature", "flux", "power")
 
 
@@ -84,7 +85,10 @@ def _contacts(case: AssemblyCase) -> Iterator[Fault]:
         yield "contacts", "missing; needs the faces that touch: [contacts.NAME] between = [...]"
     for name, contact in case.contacts.items():
         if not _NAME.fullmatch(name) or _AT in name or _is_number(name):
-            yield f"contacts.{name}", "the name must consist of letters, digits, - and _"
+            yield (
+                f"contacts.{name}",
+                "the name must consist of letters, digits, - and _, and be no number",
+            )
         one, other = contact.between or ("", "")
         if geometry.body_of(one) == geometry.body_of(other):
             yield f"contacts.{name}.between", "both faces belong to the same body"
@@ -96,6 +100,17 @@ def _contacts(case: AssemblyCase) -> Iterator[Fault]:
     for body in geometry.bodies:
         if case.contacts and body not in reached:
             yield "contacts", f"the body {body!r} touches no other one"
+    if case.contacts and not case.sliding:
+        yield "contacts", "all are glued (tie = true); needs one that slides"
+    yield from _thermal(case)
+
+
+def _thermal(case: AssemblyCase) -> Iterator[Fault]:
+    """Keys of contacts that need heat."""
+    for name, contact in case.contacts.items() if case.heat is None else ():
+        for key in _THERMAL:
+            if getattr(contact, key) is not None:
+                yield f"contacts.{name}.{key}", "has no effect without a [heat] table"
 
 
 def _is_number(name: str) -> bool:
@@ -106,68 +121,6 @@ def _is_number(name: str) -> bool:
     return True
 
 
-def _holders(case: AssemblyCase) -> Iterator[Fault]:
-    """Every body has one holder, or supports; somewhere it is pressed."""
-    holders = dict[str, str]()
-    dim = 3 if case.model == "3d" else 2
-    for name, holder in case.holders.items():
-        for key in ("direction", "point", "pivot"):
-            given = getattr(holder, key)
-            if given is not None and len(given) != dim:
-                yield f"holders.{name}.{key}", f"has {len(given)} coordinates; needs {dim}"
-        for motion in holder.free:
-            if motion in ("y", "rotation-x", "rotation-y") and dim == 2:
-                yield f"holders.{name}.free", f"{motion!r} is a motion in space"
-            if case.model == "axisymmetric" and motion != "z":
-                yield f"holders.{name}.free", f"{motion!r} is not possible in this model"
-        for surface in holder.surface:
-            body = case.geometry.body_of(surface)
-            if body in holders:
-                yield f"holders.{name}.surface", f"{body} is on holders.{holders[body]}, too"
-            holders[body] = name
-            if case.bodies[body].fixed:
-                yield f"bodies.{body}.fixed", f"{body} is on holders.{name}"
-    loads = [
-        h.force or h.approach or h.closing_moment or any(h.moments or ()) or h.history
-        for h in case.holders.values()
-    ]
-    if not any(loads) and not case.load.pressure and case.heat is None:
-        yield "holders", "nothing is pressed: one of them needs a force, a moment or an approach"
-
-
-def _reactions(case: AssemblyCase) -> Iterator[Fault]:
-    """Another holder that moves along the force bears it."""
-    for name, holder in case.holders.items():
-        if holder.reaction is None:
-            continue
-        path, other = f"holders.{name}.reaction", case.holders.get(holder.reaction)
-        if other is None:
-            known = ", ".join(one for one in case.holders if one != name)
-            yield path, f"found {holder.reaction!r}; must be another holder: {known or 'none'}"
-        elif other is holder:
-            yield path, "a holder cannot bear its own force; name another one"
-        elif holder.force is None and (holder.history is None or holder.history.force is None):
-            yield path, f"needs a force to bear: holders.{name}.force"
-        elif len(_direction(case, other)) == len(_direction(case, holder)) and not spans(
-            _translations(case, other), _direction(case, holder)
-        ):
-            text = "is not free along this force (free, direction), or has an approach"
-            yield path, f"the holder {holder.reaction!r} {text}"
-
-
-def _direction(case: AssemblyCase, holder: AssemblyHolderTable) -> tuple[float, ...]:
-    """Load direction, of any length."""
-    return holder.direction or case.geometry.press_direction(holder.surface[0])
-
-
-def _translations(case: AssemblyCase, holder: AssemblyHolderTable) -> list[tuple[float, ...]]:
-    """Directions of the translations along which a force moves a holder."""
-    along = _direction(case, holder)
-    axes = {name: tuple(float(i == k) for i in range(len(along))) for k, name in enumerate("xy")}
-    free = [along] if "z" in holder.free and holder.approach is None else []
-    return free + [axes[name] for name in holder.free if name in axes]
-
-
 def _motions(case: AssemblyCase) -> Iterator[Fault]:
     """Motions fit the model, and wear and friction heat need them."""
     for name, motion in case.motions.items():
@@ -176,6 +129,13 @@ def _motions(case: AssemblyCase) -> Iterator[Fault]:
             yield f"motions.{name}.angular_velocity", "missing; an axisymmetric model needs it"
         if motion.across and not plane:
             yield f"motions.{name}.across", "is for plane models"
+        elif motion.across and motion.angular_velocity is not None:
+            yield f"motions.{name}.across", "needs a velocity, not angular_velocity"
+        about = motion.angular_velocity is not None and case.model != "axisymmetric"
+        if any(motion.center) and not about:
+            text = "has no effect: only bodies in a section or in space rotate about it"
+            yield f"motions.{name}.center", text
+    yield from _moving_together(case)
     if case.analysis.type == "steady" and not case.wear:
         yield "wear", "missing; a steady analysis needs the wear law of a body"
     heated = case.heat is not None and not case.heat.driven
@@ -183,9 +143,21 @@ def _motions(case: AssemblyCase) -> Iterator[Fault]:
         yield "motions", "missing; wear and friction heat need a sliding body: [motions.NAME]"
 
 
+def _moving_together(case: AssemblyCase) -> Iterator[Fault]:
+    """Glued bodies that slide have the same motion."""
+    slides = case.sliding_bodies | case.motions.keys()
+    for body, motion in case.motions.items():
+        for mate in sorted(case.glued[body] & slides):
+            twice = mate in case.motions and mate < body
+            if case.motions.get(mate) != motion and not twice:
+                yield f"motions.{mate}", f"must be that of {body}: glued bodies move as one"
+
+
 def _wear(case: AssemblyCase) -> Iterator[Fault]:
     """Wear laws fit the friction of the contacts of their body."""
     for name, table in case.wear.items():
+        if case.sliding and name not in case.sliding_bodies:
+            yield f"wear.{name}", "has no effect: all contacts of this body are glued"
         if table.spread == "track" and not _passes(case, name):
             text = "is for rings that pass a sector (geometry.rings) and for a turning drum"
             yield f"wear.{name}.spread", text
@@ -194,11 +166,15 @@ def _wear(case: AssemblyCase) -> Iterator[Fault]:
         for joint, contact in case.contacts.items():
             own = name in map(case.geometry.body_of, contact.between or ())
             per_friction = law.rate is None and law.per == "friction-stress"
-            if own and per_friction and not contact.tie and contact.nominal_friction == 0.0:
+            if not own or contact.tie or contact.nominal_friction > 0.0:
+                continue
+            if per_friction:
                 yield (
                     f"contacts.{joint}.friction",
                     f'is 0; wear.{path} is per friction stress (write per = "pressure" instead)',
                 )
+            elif law.rate is not None and "mu" in law.variables:
+                yield f"contacts.{joint}.friction", f"is 0; wear.{path}.rate depends on mu"
 
 
 def _passes(case: AssemblyCase, body: str) -> bool:
@@ -240,23 +216,13 @@ def _needed(case: AssemblyCase, part: str) -> dict[str, str]:
 
 
 def _heat(case: AssemblyCase) -> Iterator[Fault]:
-    """Heat needs a sink, and one condition a surface."""
+    """Advection is by one body that passes the others."""
     heat = case.heat
     if heat is None:
         return
     if case.analysis.cyclic:
         yield "heat", f"is not supported in a {case.analysis.type} analysis"
         return
-    faces = {face for contact in case.contacts.values() for face in contact.between or ()}
-    for key in _ON_SURFACES:
-        for surface in getattr(heat, key):
-            if surface in faces:
-                text = "a contact face exchanges heat with the other body only"
-                yield f"heat.{key}.{surface}", text
-    if not heat.transient and not heat.cooling and not heat.temperature:
-        yield "heat", "needs heat.cooling or heat.temperature: there is no heat sink"
-    if heat.transient and case.analysis.type != "transient":
-        yield "heat.transient", f"requires a transient analysis, not {case.analysis.type}"
     passing = [motion for motion in case.motions.values() if not motion.across]
     if heat.advection != "none" and (case.model == "axisymmetric" or len(passing) != 1):
         yield (
@@ -270,8 +236,11 @@ def _heat(case: AssemblyCase) -> Iterator[Fault]:
 
 _CHECKS = (
     _contacts,
-    _holders,
-    _reactions,
+    holders.held,
+    holders.fitting,
+    holders.loads,
+    holders.planes,
+    holders.reactions,
     _motions,
     _wear,
     _materials,

@@ -86,10 +86,30 @@ class AssemblyCase(Section):
         return located_material(self.geometry, self.bodies, part)
 
     @property
+    def glued(self) -> dict[str, set[str]]:
+        """Bodies glued to each body, directly or by others, with itself."""
+        groups = {body: {body} for body in self.geometry.bodies}
+        for contact in self.contacts.values():
+            if contact.tie and contact.between is not None:
+                one, other = (groups[self.geometry.body_of(face)] for face in contact.between)
+                groups |= dict.fromkeys(one | other, one | other)
+        return groups
+
+    @property
     def contact_tables(self) -> dict[str, InterfaceTable]:
         """Tables of the contacts that slide, by their path."""
-        each = self.contacts.items()
-        return {f"contacts.{name}": table for name, table in each if not table.tie}
+        return {f"contacts.{name}": table for name, table in self.sliding.items()}
+
+    @property
+    def sliding(self) -> dict[str, AssemblyContactTable]:
+        """Contacts that slide, by name."""
+        return {name: table for name, table in self.contacts.items() if not table.tie}
+
+    @property
+    def sliding_bodies(self) -> set[str]:
+        """Bodies with a contact that slides."""
+        faces = [face for table in self.sliding.values() for face in table.between or ()]
+        return set(map(self.geometry.body_of, faces))
 
     @property
     def histories(self) -> dict[str, TimeHistory]:

@@ -26,9 +26,12 @@ _OF_SLIDING = (
     "friction",
     "friction_factor",
     "friction_history",
+    "transverse_friction",
     "partition",
+    "gap_conductance",
     "compliance",
     "fluid_pressure",
+    "pressure_degree",
     "initial_shape",
 )
 """Keys without a meaning for glued faces."""

@@ -15,8 +15,9 @@ from ..values.section import Fault
 from . import cyclic_assembly, materials
 from .analyses import varying
 from .assembly_histories import histories
+from .conditions import heat_in_time, heated_surfaces
 from .layer_wear import layer_wear
-from .part_wear import part_wear
+from .part_wear import note_default_per, part_wear
 
 
 def check(case: AssemblyCase) -> None:
@@ -33,6 +34,19 @@ def check(case: AssemblyCase) -> None:
             "bodies: planes of symmetry cut a sector from rotating bodies; the shear of friction, "
             "which twists the whole ring, is left out (its heat and wear are not)"
         )
+    _note_default_per(case)
+
+
+def _note_default_per(case: AssemblyCase) -> None:
+    """Note wear laws of friction stress by default, once for each law."""
+    for name, law in case.wear.laws.items():
+        body = name.partition(".materials.")[0]
+        rubbing = [
+            contact.nominal_friction
+            for contact in case.sliding.values()
+            if body in map(case.geometry.body_of, contact.between or ())
+        ]
+        note_default_per(name, law, max(rubbing, default=0.0))
 
 
 def _supports(case: AssemblyCase) -> Iterator[Fault]:
@@ -56,6 +70,29 @@ def _supports(case: AssemblyCase) -> Iterator[Fault]:
         for surface in surfaces:
             if surface in faces:
                 yield path, f"{surface!r} is a face of contacts.{faces[surface]}"
+    yield from _unloaded(case)
+
+
+def _unloaded(case: AssemblyCase) -> Iterator[Fault]:
+    """Pressures on supports, which bear them."""
+    keys = ("fixed", "symmetry", "rollers", "mid_plane") if case.model == "3d" else ("fixed",)
+    for body, table in case.bodies.items():
+        for key in keys:
+            for surface in case.load.pressure.keys() & set(getattr(table, key)):
+                text = f"is one of bodies.{body}.{key}; a pressure on it has no effect"
+                yield f"load.pressure.{surface}", text
+
+
+def _heat(case: AssemblyCase) -> Iterator[Fault]:
+    """One condition a surface, and a sink; courses need temperatures in time."""
+    if case.heat is None or case.analysis.cyclic:
+        return
+    faces = {face for contact in case.contacts.values() for face in contact.between or ()}
+    yield from heated_surfaces(case.heat, faces, leaves=False)
+    yield from heat_in_time(case, case.heat)
+    rubs = any(contact.nominal_friction for contact in case.contact_tables.values())
+    if not case.heat.driven and not rubs and case.analysis.type != "stability":
+        yield "contacts", "have no friction; friction heat needs friction"
 
 
 def _sliding(case: AssemblyCase) -> Iterator[Fault]:
@@ -67,6 +104,17 @@ def _sliding(case: AssemblyCase) -> Iterator[Fault]:
             yield (
                 f"bodies.{body}.symmetry",
                 "sliding friction along x is not symmetric about a plane x = const",
+            )
+
+
+def _pressure_degrees(case: AssemblyCase) -> Iterator[Fault]:
+    """The pressure has at most the degree of the displacement."""
+    for path, contact in case.contact_tables.items():
+        own = contact.pressure_degree
+        if isinstance(own, int) and own > case.mesh.degree:
+            yield (
+                f"{path}.pressure_degree",
+                f"found {own}; at most mesh.degree = {case.mesh.degree}",
             )
 
 
@@ -86,12 +134,15 @@ _CHECKS = (
     _supports,
     _sliding,
     materials.cell_sets,
+    materials.like_alone,
     materials.locking,
     histories,
     varying,
     layer_wear,
     part_wear,
+    _pressure_degrees,
     _carried,
+    _heat,
     cyclic_assembly.unsupported,
     cyclic_assembly.fretting,
     cyclic_assembly.reciprocating,

@@ -43,6 +43,10 @@ def _of_holder(path: str, holder: AssemblyHolderTable) -> Iterator[Fault]:
         yield f"{path}.history.{key}", text
     if history.force is None and not refused:
         yield f"{path}.history.force", "missing; required in a transient analysis"
+    for key in ("force", "approach"):
+        if getattr(holder, key) is not None:
+            text = f"cannot be given together with {path}.history, which gives the force"
+            yield f"{path}.{key}", text
     for key in _UNVARIED:
         if getattr(holder, key):
             text = f"cannot be combined with {path}.history, which varies the force only"

@@ -13,7 +13,7 @@ from ..tables.schema import Case
 from ..values.section import Fault
 from . import analyses, conditions, materials
 from .layer_wear import layer_wear
-from .part_wear import part_wear
+from .part_wear import note_default_per, part_wear
 
 _SLIDING = ("steady", "transient", "reciprocating")
 """Analyses of wear by sliding."""
@@ -39,12 +39,7 @@ def check(case: Case) -> None:
             "friction, which twists the whole ring, is left out (its heat and wear are not)"
         )
     for name, law in case.wear.laws.items():
-        if law.rate is None and "per" not in law.model_fields_set and friction > 0.0:
-            note(
-                f"wear.{name}.per is left out: the coefficient multiplies mu p (friction stress); "
-                'Archard\'s k multiplies p: with per = "pressure" it wears '
-                f"{friction**-law.pressure_exponent:.3g} times as fast"
-            )
+        note_default_per(name, law, friction)
 
 
 def _names(case: Case) -> Iterator[Fault]:
@@ -201,6 +196,7 @@ _CHECKS = (
     _names,
     _model,
     materials.cell_sets,
+    materials.like_alone,
     materials.materials,
     materials.locking,
     conditions.holder,

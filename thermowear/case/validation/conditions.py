@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
+from ..any_case import AnyCase
 from ..tables.conditions import HeatTable
 from ..tables.geometry import Geometry
 from ..tables.schema import Case
@@ -176,7 +177,8 @@ def heat(case: Case) -> Iterator[Fault]:
         if case.analysis.type == "stability":
             yield "heat", "missing; required in a stability analysis"
         return
-    yield from _surfaces(case, heat)
+    leaves = heat.advection == "resolved" and case.geometry.rotation_center is None
+    yield from heated_surfaces(heat, case.geometry.contact, leaves)
     if heat.advection != "none" and not case.geometry.passes:
         yield "heat.advection", _not_advected(case)
     elif heat.advection != "none" and case.motion is None:
@@ -192,22 +194,36 @@ def heat(case: Case) -> Iterator[Fault]:
             '"spread" needs a mesh with rows of elements along the path of body 2; the mesh of '
             f'{case.geometry.type!r} has none: use "resolved"',
         )
-    if case.analysis.cyclic:  # do not support heat
+    yield from heat_in_time(case, heat)
+
+
+def heat_in_time(case: AnyCase, heat: HeatTable) -> Iterator[Fault]:
+    """Temperatures in time need a transient analysis, and their courses need them."""
+    analysis = case.analysis
+    if analysis.cyclic:  # do not support heat
         return
-    if heat.transient and case.analysis.type != "transient":
-        yield "heat.transient", f"requires a transient analysis, not {case.analysis.type}"
+    if heat.transient and analysis.type != "transient":
+        yield "heat.transient", f"requires a transient analysis, not {analysis.type}"
     elif not heat.transient:
         keys = [] if heat.initial is None else ["initial"]
-        if case.analysis.type == "transient":  # the others have no histories at all
+        if analysis.type == "transient":  # the others have no histories at all
             keys += heat.histories
         for key in keys:
             yield f"heat.{key}", "requires temperatures in time: heat.transient = true"
 
 
-def _surfaces(case: Case, heat: HeatTable) -> Iterator[Fault]:
-    """Thermal boundary conditions: heat sink, and at most one condition per surface."""
+def heated_surfaces(heat: HeatTable, faces: Collection[str], leaves: bool) -> Iterator[Fault]:
+    """Thermal boundary conditions: heat sink, and at most one condition per surface.
+
+    Parameters
+    ----------
+    heat : HeatTable
+    faces : collection of str
+        Contact faces.
+    leaves : bool
+        True if a body carries heat out of the model.
+    """
     lasts = not heat.transient  # a stability analysis needs a steady base state
-    leaves = heat.advection == "resolved" and case.geometry.rotation_center is None
     if lasts and not leaves and not heat.cooling and not heat.temperature:
         yield "heat", "needs heat.cooling or heat.temperature: there is no heat sink"
     if heat.ambient_history is not None and not heat.cooling and not leaves:
@@ -218,7 +234,7 @@ def _surfaces(case: Case, heat: HeatTable) -> Iterator[Fault]:
                 yield f"heat.{table}.{name}", f"this surface already has a prescribed {taken}"
     for table in SURFACES:
         for name in getattr(heat, table):
-            if name in case.geometry.contact:
+            if name in faces:
                 text = "a contact face exchanges heat with the other body only"
                 yield f"heat.{table}.{name}", text
 

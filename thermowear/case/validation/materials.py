@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ..any_case import AnyCase
-from ..tables.materials import Properties, set_with_material
+from ..assembly.tables import SUPPORTS
+from ..tables.materials import set_with_material
 from ..tables.schema import Case
 from ..values.section import Fault
 
@@ -38,18 +39,12 @@ def materials(case: Case) -> Iterator[Fault]:
         name = part if part in case.bodies else geometry.zones.get(part, part)
         if name not in case.bodies:
             continue
-        table: Properties = case.bodies[name]
-        path, in_set = f"bodies.{name}", set_with_material(geometry, case.bodies, part)
-        if in_set is not None:
-            path, table = f"{path}.materials.{in_set}", case.bodies[name].materials[in_set]
-        own = part == name or in_set is not None
-        if table.like is not None and own:
-            for key in sorted(table.model_fields_set - {"like", "materials"}):
-                yield f"{path}.{key}", "not allowed together with like"
+        in_set = set_with_material(geometry, case.bodies, part)
+        path = f"bodies.{name}" if in_set is None else f"bodies.{name}.materials.{in_set}"
         try:
             sources[part] = case.located_material(part)
         except ValueError as error:
-            if own:
+            if part == name or in_set is not None:
                 yield f"{path}.like", str(error)
     missing: dict[str, str] = {}
     for parts, keys, why in _required(case):
@@ -59,6 +54,16 @@ def materials(case: Case) -> Iterator[Fault]:
                 if getattr(material, key) is None:
                     missing.setdefault(f"{path}.{key}", f"missing; needed{why}")
     yield from missing.items()
+
+
+def like_alone(case: AnyCase) -> Iterator[Fault]:
+    """A body or cell set with the material of another one has no properties of its own."""
+    for name, body in case.bodies.items():
+        sets = {f"{name}.materials.{key}": table for key, table in body.materials.items()}
+        for path, table in {name: body, **sets}.items():
+            own = table.model_fields_set - {"like", "materials", *SUPPORTS}
+            for key in sorted(own) if table.like is not None else ():
+                yield f"bodies.{path}.{key}", "not allowed together with like"
 
 
 def cell_sets(case: AnyCase) -> Iterator[Fault]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from ...errors import note
 from ..any_case import AnyCase
 from ..tables.materials import part_named
+from ..tables.wear_rate import RateTable
 from ..values.section import Fault
 
 
@@ -29,3 +31,13 @@ def part_wear(case: AnyCase) -> Iterator[Fault]:
             yield path, f"is not supported in a {type_} analysis"
         if wear.spread != "in-place":
             yield path, f'requires spread = "in-place"; found {wear.spread!r}'
+
+
+def note_default_per(name: str, law: RateTable, friction: float) -> None:
+    """Note a coefficient of friction stress by default, where friction makes a difference."""
+    if law.rate is None and "per" not in law.model_fields_set and friction > 0.0:
+        note(
+            f"wear.{name}.per is left out: the coefficient multiplies mu p (friction stress); "
+            'Archard\'s k multiplies p: with per = "pressure" it wears '
+            f"{friction**-law.pressure_exponent:.3g} times as fast"
+        )

@@ -30,6 +30,7 @@ CENTRED, SHORT = 0.3, 0.1  # target of p s relative to its mean; smallest useful
 GROWTH = 10.0  # largest growth of rates in a step: large exponents would overshoot
 VANISHED = 1e-60  # sum of p s below which an unconverged iteration has no solution
 EXACT, ENOUGH = 1e-13, 1e-10  # relative errors: target, and largest accepted one
+AT_REST = 1e-12  # pressure and wear velocity, relative to the largest, that count as zero
 
 
 @dataclass(frozen=True)
@@ -204,7 +205,12 @@ def _iterate(conditions: _Conditions) -> tuple[np.ndarray, np.ndarray, bool] | N
         separation = separation + reach * ds
     if not error < ENOUGH:
         return None
-    touching = pressure / pressure.max() > separation / newton.rate_scale
+    approach = conditions.normal_modes @ multipliers[: len(conditions.load)]
+    pressing = pressure / pressure.max()
+    touching = pressing > separation / newton.rate_scale
+    # where nothing approaches, as between fixed bodies, both p and s are rounding
+    touching &= np.maximum(pressing, approach / approach.max()) > AT_REST
+    touching &= conditions.normal_modes.any(axis=1)
     return np.where(touching, pressure, 0.0), multipliers, bool(np.linalg.det(newton.tangent) > 0)
 
 

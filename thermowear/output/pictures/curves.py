@@ -139,7 +139,7 @@ def _depends_on_direction(data: tables.TableColumns, name: str) -> bool:
     """Test whether a column differs along the normal and along the load direction."""
     along_normal, along_load = data[name], data[f"{name}_along_press"]
     size = max(float(np.ptp(along_normal)), _SMALLEST_RANGE * float(np.abs(along_normal).max()))
-    return float(np.nanmax(np.abs(along_load - along_normal))) > _SAME * size
+    return bool(np.any(np.abs(along_load - along_normal) > _SAME * size))  # NaN is not
 
 
 def draw_friction(folder: Path, contact: str = "") -> None:

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...contact.faces.face import Face, Surface
+from ...errors import ComputationError
 from ...geometry.cad.design import Design
 from ...laws.principle.least_worn import least_worn
 from ..interface.body_state import body_state
@@ -47,6 +48,9 @@ def steady_design(system: System, number: int, side: int) -> Design:
     position = least_worn(modes, open_by, system.weights, pressure > 0)
     depth = np.maximum(modes @ position - open_by, 0.0)
     own, pairing = system.contacts.ranges[number], system.contacts.each[number]
+    if not np.any(pressure[own] > 0):
+        table = system.model.interfaces[number].table
+        raise ComputationError(f"{table}: carries nothing in the steady state, so no shape follows")
     depth, height, along = depth[own], gap[own] + depth[own], along_load(system)[own]
     at, other = pairing.sides[side], side == 1
     points, normals = at.face.points(at.facet, at.t), pairing.normals

@@ -57,13 +57,14 @@ def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
         state = body_state(system, contact)
     wear = found.wear
     pressing = wear.pressure > 0
+    _require_positions(system, pressing)
     # holder position of least material removal for conforming faces
     opening = state.opening + system.softness * wear.pressure
     position = least_worn(system.holder.modes, opening, system.weights, pressing)
     height = system.holder.modes @ position - opening
-    shape = np.concatenate(
-        [height[own][pressing[own]].max() - height[own] for own in system.contacts.ranges]
-    )
+    shape = np.full(len(height), np.nan)  # unknown where wear has unloaded the contact
+    for own in system.contacts.ranges:
+        shape[own] = np.fmax.reduce(np.where(pressing, height, np.nan)[own]) - height[own]
     end = record(
         system,
         contact,
@@ -81,14 +82,33 @@ def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
     return conclude(end, extra)
 
 
+def _require_positions(system: System, pressing: np.ndarray) -> None:
+    """Reject holders whose free motions close the gap at no point that presses (n,).
+
+    Raises
+    ------
+    ComputationError
+    """
+    idle = ~np.any(system.holder.modes[pressing] != 0.0, axis=0)
+    if idle.any():
+        names = np.array([f"{h.name} ({name})" for h in system.model.holders for name in h.free])
+        raise ComputationError(
+            f"no steady position of the holders {', '.join(names[system.holder.free][idle])}: "
+            "their contacts carry nothing; give them a force, or fix them (free = [])"
+        )
+
+
 def wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, Any]:
     """Rigid-body wear velocities of the free modes of the holders, by summary key [m/s, rad/s]."""
     found: dict[str, Any] = {}
+    amounts = np.zeros(len(system.holder.rigid_modes))  # those of given motions
+    if velocity is not None:
+        amounts[system.holder.free] = velocity
     for holder, modes in zip(system.model.holders, system.modes_of_holders, strict=True):
         own: dict[str, float | None] = {_VELOCITIES["z"]: None}
         found[holder.name] = own
         if velocity is not None:
-            pairs = zip(holder.free, velocity[modes], strict=True)
+            pairs = zip(holder.free, amounts[modes], strict=True)
             own |= {_VELOCITIES[name]: float(value) for name, value in pairs}
     return found[system.model.holder.name] if system.model.is_pair else {"holders": found}
 

@@ -62,11 +62,12 @@ def strokes(system: System, settings: ReciprocatingAnalysis) -> np.ndarray:
     Raises
     ------
     CaseError
-        If both bodies of an interface move alike.
+        If both bodies of an interface of several move alike, or not at all.
     """
     given = 4 * settings.amplitude * settings.frequency
+    at_rest = given if system.model.is_pair else 0.0
     each = [one.motion.velocity for one in system.model.interfaces]
-    found = np.array([1.0 if velocity is None else velocity / given for velocity in each])
+    found = np.array([at_rest if velocity is None else velocity for velocity in each]) / given
     for interface, stroke in zip(system.model.interfaces, found, strict=True):
         if abs(stroke) < _AT_REST:
             raise CaseError(

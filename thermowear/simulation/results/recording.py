@@ -190,7 +190,7 @@ def profile(end: Snapshot) -> Profile:
     for own in system.contacts.ranges:
         height = interface.shape[own].max() - interface.shape[own] + open_by[own].min()
         height = height / along[own]
-        shape[own] = np.nanmax(height) - height
+        shape[own] = np.fmax.reduce(height) - height
     rate = interface.wear_rate_1 + interface.wear_rate_2
     return Profile(
         x=interface.x,

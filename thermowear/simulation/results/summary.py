@@ -108,6 +108,7 @@ def _of_interface(end: Snapshot, index: int) -> dict:
     depths = np.array([fields.wear_1, fields.wear_2])
     in_gap = (system.worn_areas * (depths - system.moved))[:, own].sum(axis=1)
     volumes = in_gap + system.lost[index]
+    shape = fields.shape[own]
     constant, fluid = isinstance(interface.friction, Constant), fluid_forces(system)
     return {
         "friction": interface.nominal_friction if constant else None,
@@ -120,7 +121,7 @@ def _of_interface(end: Snapshot, index: int) -> dict:
         "min_pressure_Pa": float(p.min()),
         "contact_area_m2": float(w[worn].sum()),
         "contact_zones_m": contact_zones(pairing, p),
-        "shape_range_m": float(np.ptp(fields.shape[own])),
+        "shape_range_m": float(np.ptp(shape)) if np.isfinite(shape).all() else None,
         "friction_power_W": float(w @ (at.heating[own] * p)),
         **_conducted(end, own),
         "wear_dissipation_W": float(w @ (p * rates)),

@@ -5,8 +5,9 @@ the one that reduces the error fastest per unknown,
 
     rate = ln(e_0 / e_1) / ln(N_1 / N_0),
 
-and so on. The error e that steers decreases steadily with the mesh: it excludes the largest
-pressure, whose error may vanish by chance on a coarse mesh.
+and so on. From the mesh that reaches the accuracy it goes back, parameter by parameter, as long as
+meshes with fewer unknowns reach it, too. The error e that steers decreases steadily with the mesh:
+it excludes the largest pressure, whose error may vanish by chance on a coarse mesh.
 
 Errors are those estimated, with a factor of safety. Without an estimate, and in analyses of a
 history, which carry errors of earlier states along, a value f has the error that follows from a
@@ -28,6 +29,7 @@ from typing import Generic, TypeVar
 import numpy as np
 
 Mesh = TypeVar("Mesh")
+Steps = Mapping[str, Callable[[Mesh], Mesh | None]]
 
 _MOST = 60
 """Largest number of trials."""
@@ -94,6 +96,8 @@ class MeshSearch(Generic[Mesh]):
         Trial of a mesh; None where nothing can be computed on it.
     steps : mapping of str to callable
         Changes of the mesh: the next one, or None at the limit of a parameter.
+    back : mapping of str to callable
+        Changes to meshes that may have fewer unknowns.
     accuracy : float
         Relative error that is asked for.
     trials : list of Trial
@@ -101,12 +105,13 @@ class MeshSearch(Generic[Mesh]):
     """
 
     evaluate: Callable[[Mesh], Trial[Mesh] | None]
-    steps: Mapping[str, Callable[[Mesh], Mesh | None]]
+    steps: Steps
+    back: Steps
     accuracy: float
     trials: list[Trial[Mesh]] = field(default_factory=list)
 
     def best(self, start: Mesh) -> Trial[Mesh] | None:
-        """First trial that reaches the accuracy, or the last one if none does.
+        """Trial with few unknowns that reaches the accuracy, or the last one if none does.
 
         None if there is no result on any mesh.
         """
@@ -117,12 +122,16 @@ class MeshSearch(Generic[Mesh]):
             if after is None:
                 break
             current = after
+        while current and self.reached(current) and len(self.trials) < _MOST:
+            after = self._coarser(current)
+            if after is None:
+                break
+            current = after
         return current
 
     def _fastest(self, trial: Trial[Mesh]) -> str | None:
         """Step that reaches the accuracy, or that reduces the error fastest; None if none does."""
-        tried = {name: self._after(trial, name) for name in self.steps}
-        found = {name: after for name, after in tried.items() if after is not None}
+        found = self._around(trial, self.steps)
         good = {name: after.unknowns for name, after in found.items() if self.reached(after)}
         if good:
             return min(good, key=lambda name: good[name])
@@ -133,7 +142,7 @@ class MeshSearch(Generic[Mesh]):
     def _straight(self, trial: Trial[Mesh], name: str) -> Trial[Mesh]:
         """Trial after some steps of one kind, as long as they reduce the error."""
         for _ in range(_STRAIGHT):
-            after = self._after(trial, name)
+            after = self._around(trial, {name: self.steps[name]}).get(name)
             if after is None or not (self.reached(after) or rate(trial, after) > _SLOWEST):
                 break
             trial = after
@@ -141,9 +150,23 @@ class MeshSearch(Generic[Mesh]):
                 break
         return trial
 
-    def _after(self, trial: Trial[Mesh], name: str) -> Trial[Mesh] | None:
-        mesh = self.steps[name](trial.mesh)
-        return None if mesh is None else self._try(mesh)
+    def _refined(self, trial: Trial[Mesh]) -> Trial[Mesh] | None:
+        """Trial with most unknowns one step away, where no step reduces the error by itself."""
+        around = self._around(trial, self.steps).values()
+        finer = [each for each in around if each.unknowns > _FINER * trial.unknowns]
+        return max(finer, key=_unknowns, default=None)
+
+    def _coarser(self, trial: Trial[Mesh]) -> Trial[Mesh] | None:
+        """Trial with fewest unknowns one step back that reaches the accuracy, too; None if none."""
+        around = self._around(trial, self.back).values()
+        good = [each for each in around if each.unknowns < trial.unknowns and self.reached(each)]
+        return min(good, key=_unknowns, default=None)
+
+    def _around(self, trial: Trial[Mesh], steps: Steps) -> dict[str, Trial[Mesh]]:
+        """Trials one step away, as far as there are results."""
+        meshes = {name: step(trial.mesh) for name, step in steps.items()}
+        tried = {name: self._try(mesh) for name, mesh in meshes.items() if mesh is not None}
+        return {name: found for name, found in tried.items() if found is not None}
 
     def reached(self, trial: Trial[Mesh]) -> bool:
         """Test whether all errors of a trial are within the accuracy."""
@@ -200,15 +223,6 @@ class MeshSearch(Generic[Mesh]):
             meshes += [finer for finer in around if finer is not None and finer not in meshes]
         return None
 
-    def _refined(self, trial: Trial[Mesh]) -> Trial[Mesh] | None:
-        """Trial with most unknowns one step away, where no step reduces the error by itself."""
-        finer, most = None, _FINER * trial.unknowns
-        for name in self.steps:
-            found = self._after(trial, name)
-            if found is not None and found.unknowns > most:
-                finer, most = found, found.unknowns
-        return finer
-
     def _try(self, mesh: Mesh) -> Trial[Mesh] | None:
         for known in self.trials:
             if known.mesh == mesh:
@@ -217,6 +231,10 @@ class MeshSearch(Generic[Mesh]):
         if found is not None:
             self.trials.append(found)
         return found
+
+
+def _unknowns(trial: Trial) -> int:
+    return trial.unknowns
 
 
 def _of_pressure(trial: Trial) -> tuple[float, float]:

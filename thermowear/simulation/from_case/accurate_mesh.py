@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from mpi4py import MPI
@@ -37,10 +36,19 @@ class MeshSize:
         """The next degree."""
         return replace(self, degree=self.degree + 1) if self.degree < _HIGHEST else None
 
+    def lower(self) -> MeshSize | None:
+        """The degree before."""
+        return replace(self, degree=self.degree - 1) if self.degree > 1 else None
+
     def finer(self) -> MeshSize | None:
         """Elements shorter by a third, an even number."""
         elements = max(self.elements + 2, 2 * round(0.75 * self.elements))
         return replace(self, elements=elements) if elements <= MOST_ELEMENTS else None
+
+    def coarser(self) -> MeshSize | None:
+        """Elements longer by a half, an even number."""
+        elements = min(self.elements - 2, 2 * round(self.elements / 3))
+        return replace(self, elements=elements) if elements >= 2 else None
 
     def steeper(self) -> MeshSize | None:
         """Elements smaller towards the edges of the contact."""
@@ -53,12 +61,21 @@ class MeshSize:
         return replace(self, grading=larger[0]) if larger else None
 
 
-_STEPS: dict[str, tuple[Callable[[MeshSize], MeshSize | None], ...]] = {
+_KEYS = ("degree", "elements", "grading")
+
+
+_FORWARD = {
     "degree": (MeshSize.higher,),
     "elements": (MeshSize.finer,),
     "grading": (MeshSize.steeper, MeshSize.flatter),
 }
-"""Changes of each key."""
+"""Changes of each key that reduce the error."""
+_BACK = {
+    "degree": (MeshSize.lower,),
+    "elements": (MeshSize.coarser,),
+    "grading": (MeshSize.steeper, MeshSize.flatter),
+}
+"""Changes of each key that may reduce the number of unknowns."""
 
 
 def with_accurate_mesh(
@@ -77,7 +94,7 @@ def with_accurate_mesh(
         If nothing can be computed on any mesh.
     """
     accuracy = case.mesh.accuracy
-    changed = ("degree",) if case.geometry.from_file else tuple(_STEPS)
+    changed = ("degree",) if case.geometry.from_file else _KEYS
     chosen = [key for key in changed if key not in case.mesh.model_fields_set]
     if accuracy is None:
         return case
@@ -100,8 +117,11 @@ def with_accurate_mesh(
             return None
         return comm.bcast(_trial(size, result, history))
 
-    steps = {change.__name__: change for key in chosen for change in _STEPS[key]}
-    search = MeshSearch(evaluate, steps, accuracy)
+    forward, back = (
+        {step.__name__: step for key in chosen for step in steps[key]}
+        for steps in (_FORWARD, _BACK)
+    )
+    search = MeshSearch(evaluate, forward, back, accuracy)
     with (phases or Phases(observer.phase))("mesh search"):
         best = search.best(start)
     if best is None:
@@ -112,14 +132,14 @@ def with_accurate_mesh(
 
 def _with(case: AnyCase, size: MeshSize) -> AnyCase:
     """Case with a mesh of given size."""
-    given = case.mesh.model_dump(exclude_unset=True) | {key: getattr(size, key) for key in _STEPS}
+    given = case.mesh.model_dump(exclude_unset=True) | {key: getattr(size, key) for key in _KEYS}
     return case.model_copy(update={"mesh": MeshTable(**given)})
 
 
 def _found(search: MeshSearch[MeshSize], best: Trial[MeshSize]) -> str:
     """Note on the mesh that was found, and on what it does not reach."""
     size, error = best.mesh, search.error(best)
-    keys = ", ".join(f"mesh.{key} = {getattr(size, key):g}" for key in _STEPS)
+    keys = ", ".join(f"mesh.{key} = {getattr(size, key):g}" for key in _KEYS)
     text = (
         f"mesh.accuracy: {keys} after {len(search.trials)} meshes; {best.unknowns} unknowns, "
         f"estimated error {100 * error:.2g} %"

@@ -154,13 +154,13 @@ class MeshSearch(Generic[Mesh]):
         """Trial with most unknowns one step away, where no step reduces the error by itself."""
         around = self._around(trial, self.steps).values()
         finer = [each for each in around if each.unknowns > _FINER * trial.unknowns]
-        return max(finer, key=_unknowns, default=None)
+        return max(finer, key=_unknowns) if finer else None
 
     def _coarser(self, trial: Trial[Mesh]) -> Trial[Mesh] | None:
         """Trial with fewest unknowns one step back that reaches the accuracy, too; None if none."""
         around = self._around(trial, self.back).values()
         good = [each for each in around if each.unknowns < trial.unknowns and self.reached(each)]
-        return min(good, key=_unknowns, default=None)
+        return min(good, key=_unknowns) if good else None
 
     def _around(self, trial: Trial[Mesh], steps: Steps) -> dict[str, Trial[Mesh]]:
         """Trials one step away, as far as there are results."""

@@ -144,6 +144,12 @@ def _mesh(chosen) -> int:
     if is_picture and case.model != "3d":
         raise CaseError(f"-o {chosen.output}: pictures of meshes require a 3d model")
     _check_absent(chosen.output, chosen.overwrite)
+    if case.mesh.accuracy is not None:
+        from ..simulation.from_case import with_accurate_mesh
+        from .workers import start_petsc
+
+        start_petsc()
+        case = with_accurate_mesh(case)
     mesh = case.tagged_mesh()
     if is_picture:
         make_mesh_picture(whole_bodies(mesh, case.geometry), chosen.output)

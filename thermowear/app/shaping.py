@@ -109,10 +109,10 @@ def shape(
 
     from ..simulation.analyses.design import steady_design
     from ..simulation.analyses.positioning import prepare
-    from ..simulation.from_case import model_of
+    from ..simulation.from_case import model_of, with_accurate_mesh
     from ..timer import Phases
 
-    case = steady_case(source, overrides)
+    case = with_accurate_mesh(steady_case(source, overrides), MPI.COMM_SELF)
     model = model_of(case)
     number, side = _place(model, body, face)
     interface = model.interfaces[number]

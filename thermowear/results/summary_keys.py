@@ -144,6 +144,7 @@ def group_of(key: str) -> str:
 
 PHASES = {
     "import": "import of libraries",
+    "mesh search": "search for the mesh",
     "pair": "pairing of the contact faces",
     "assemble elasticity": "assembly of elasticity",
     "condense elasticity": "condensation of elasticity",

@@ -5,14 +5,14 @@ All values are in SI after reading; `units` defines the unit of each key.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from ...errors import CaseError
 from ...laws.time_course import LoadHistories
 from ..values.section import Number, Section
-from ..values.units import Length
+from ..values.units import Length, Percentage
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
 from .contact import ContactTable, InterfaceTable
@@ -25,7 +25,8 @@ from .wear import WearTable
 _MOST_NODES = 2_000_000
 """Largest number of displacement nodes: larger matrices exceed the memory of a workstation."""
 
-Elements = Annotated[int, Field(ge=1, le=2000, strict=True)]
+MOST_ELEMENTS = 2000
+Elements = Annotated[int, Field(ge=1, le=MOST_ELEMENTS, strict=True)]
 Grading = Annotated[Number, Field(ge=0.05, le=1.0)]
 
 
@@ -58,7 +59,12 @@ class MeshTable(Section):
         Linear solver of bodies in space: ``auto`` (by size), ``direct`` or ``multigrid``.
     bodies : dict of str to FaceMesh
         Deviations for single bodies: the meshes of the faces need not match.
+    accuracy : float or None
+        Largest relative error of pressure, shape and temperature; those of `degree`, `elements`
+        and `grading` that are not given are chosen for it.
     """
+
+    CHOSEN: ClassVar = {"degree", "elements", "grading"}
 
     degree: Annotated[int, Field(ge=1, le=10, strict=True)] = 8
     elements: Elements = 12
@@ -67,6 +73,7 @@ class MeshTable(Section):
     contact_size: Length | None = None
     solver: Literal["auto", "direct", "multigrid"] = "auto"
     bodies: dict[str, FaceMesh] = {}
+    accuracy: Percentage | None = None
 
     def face(self, body: str) -> tuple[int, float]:
         """Number of elements along the contact, and grading, of one body."""
@@ -256,5 +263,13 @@ class Case(Section):
 
 
 def as_plain(case: Section) -> dict[str, Any]:
-    """Case as nested tables of text and numbers, including defaults."""
-    return case.model_dump(exclude_none=True)
+    """Case as nested tables of text and numbers, including defaults.
+
+    Keys of the mesh that an accuracy stands for are left out.
+    """
+    tables = case.model_dump(exclude_none=True)
+    mesh = getattr(case, "mesh", None)
+    if mesh is not None and mesh.accuracy is not None:
+        chosen = MeshTable.CHOSEN - mesh.model_fields_set
+        tables["mesh"] = {key: v for key, v in tables["mesh"].items() if key not in chosen}
+    return tables

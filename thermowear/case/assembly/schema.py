@@ -25,7 +25,6 @@ from .tables import (
     SurfaceLoadTable,
 )
 
-
 _THERMAL = ("conductance", "gap_conductance", "partition")
 """Keys of ``heat`` that contacts share."""
 

@@ -5,7 +5,7 @@ from itertools import product
 
 import pytest
 
-from thermowear.simulation.accuracy.mesh_search import MeshSearch, Trial
+from thermowear.simulation.accuracy.mesh_search import MeshSearch, MeshTrial
 
 LIMIT = 12
 
@@ -49,7 +49,7 @@ def search(error, accuracy, peak=None, history=False, values=lambda _: 1.0):
         mean, largest = error(size), (peak or error)(size)
         estimates = {"pressure": mean, "max_pressure": largest}
         changing = {"max_pressure": (values(size), 1.0)}
-        return Trial(size, unknowns(size), history, estimates, changing)
+        return MeshTrial(size, unknowns(size), history, estimates, changing)
 
     return MeshSearch(evaluate, STEPS, BACK, accuracy)
 
@@ -80,7 +80,7 @@ def test_shape_needs_a_margin():
 
     def evaluate(size):
         estimates = {"pressure": 1e-9, "max_pressure": 1e-9, "shape": smooth(size)}
-        return Trial(size, unknowns(size), False, estimates, {"max_pressure": (1.0, 1.0)})
+        return MeshTrial(size, unknowns(size), False, estimates, {"max_pressure": (1.0, 1.0)})
 
     found = MeshSearch(evaluate, STEPS, BACK, 1e-2).best(Size())
     assert 2.5 * smooth(found.mesh) <= 1e-2

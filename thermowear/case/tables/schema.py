@@ -11,8 +11,9 @@ from pydantic import Field, model_validator
 
 from ...errors import CaseError
 from ...laws.time_course import LoadHistories
+from ..values.percentages import Percentage
 from ..values.section import Number, Section
-from ..values.units import Length, Percentage
+from ..values.units import Length
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
 from .contact import ContactTable, InterfaceTable

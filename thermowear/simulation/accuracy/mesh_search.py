@@ -56,7 +56,7 @@ _LEAST = 1e-12
 
 
 @dataclass(frozen=True)
-class Trial(Generic[Mesh]):
+class MeshTrial(Generic[Mesh]):
     """Result on one mesh.
 
     Attributes
@@ -93,25 +93,25 @@ class MeshSearch(Generic[Mesh]):
     Attributes
     ----------
     evaluate : callable
-        Trial of a mesh; None where nothing can be computed on it.
+        MeshTrial of a mesh; None where nothing can be computed on it.
     steps : mapping of str to callable
         Changes of the mesh: the next one, or None at the limit of a parameter.
     back : mapping of str to callable
         Changes to meshes that may have fewer unknowns.
     accuracy : float
         Relative error that is asked for.
-    trials : list of Trial
+    trials : list of MeshTrial
         All results so far.
     """
 
-    evaluate: Callable[[Mesh], Trial[Mesh] | None]
+    evaluate: Callable[[Mesh], MeshTrial[Mesh] | None]
     steps: Steps
     back: Steps
     accuracy: float
-    trials: list[Trial[Mesh]] = field(default_factory=list)
+    trials: list[MeshTrial[Mesh]] = field(default_factory=list)
 
-    def best(self, start: Mesh) -> Trial[Mesh] | None:
-        """Trial with few unknowns that reaches the accuracy, or the last one if none does.
+    def best(self, start: Mesh) -> MeshTrial[Mesh] | None:
+        """MeshTrial with few unknowns that reaches the accuracy, or the last one if none does.
 
         None if there is no result on any mesh.
         """
@@ -129,7 +129,7 @@ class MeshSearch(Generic[Mesh]):
             current = after
         return current
 
-    def _fastest(self, trial: Trial[Mesh]) -> str | None:
+    def _fastest(self, trial: MeshTrial[Mesh]) -> str | None:
         """Step that reaches the accuracy, or that reduces the error fastest; None if none does."""
         found = self._around(trial, self.steps)
         good = {name: after.unknowns for name, after in found.items() if self.reached(after)}
@@ -139,8 +139,8 @@ class MeshSearch(Generic[Mesh]):
         name = max(rates, key=lambda name: rates[name], default=None)
         return name if name and rates[name] > _SLOWEST else None
 
-    def _straight(self, trial: Trial[Mesh], name: str) -> Trial[Mesh]:
-        """Trial after some steps of one kind, as long as they reduce the error."""
+    def _straight(self, trial: MeshTrial[Mesh], name: str) -> MeshTrial[Mesh]:
+        """MeshTrial after some steps of one kind, as long as they reduce the error."""
         for _ in range(_STRAIGHT):
             after = self._around(trial, {name: self.steps[name]}).get(name)
             if after is None or not (self.reached(after) or rate(trial, after) > _SLOWEST):
@@ -150,29 +150,29 @@ class MeshSearch(Generic[Mesh]):
                 break
         return trial
 
-    def _refined(self, trial: Trial[Mesh]) -> Trial[Mesh] | None:
-        """Trial with most unknowns one step away, where no step reduces the error by itself."""
+    def _refined(self, trial: MeshTrial[Mesh]) -> MeshTrial[Mesh] | None:
+        """MeshTrial with most unknowns one step away, where no step reduces the error by itself."""
         around = self._around(trial, self.steps).values()
         finer = [each for each in around if each.unknowns > _FINER * trial.unknowns]
         return max(finer, key=_unknowns) if finer else None
 
-    def _coarser(self, trial: Trial[Mesh]) -> Trial[Mesh] | None:
-        """Trial with fewest unknowns one step back that reaches the accuracy, too; None if none."""
+    def _coarser(self, trial: MeshTrial[Mesh]) -> MeshTrial[Mesh] | None:
+        """MeshTrial with fewest unknowns one step back that reaches the accuracy, too; None if none."""
         around = self._around(trial, self.back).values()
         good = [each for each in around if each.unknowns < trial.unknowns and self.reached(each)]
         return min(good, key=_unknowns) if good else None
 
-    def _around(self, trial: Trial[Mesh], steps: Steps) -> dict[str, Trial[Mesh]]:
+    def _around(self, trial: MeshTrial[Mesh], steps: Steps) -> dict[str, MeshTrial[Mesh]]:
         """Trials one step away, as far as there are results."""
         meshes = {name: step(trial.mesh) for name, step in steps.items()}
         tried = {name: self._try(mesh) for name, mesh in meshes.items() if mesh is not None}
         return {name: found for name, found in tried.items() if found is not None}
 
-    def reached(self, trial: Trial[Mesh]) -> bool:
+    def reached(self, trial: MeshTrial[Mesh]) -> bool:
         """Test whether all errors of a trial are within the accuracy."""
         return self.error(trial) <= self.accuracy
 
-    def error(self, trial: Trial[Mesh]) -> float:
+    def error(self, trial: MeshTrial[Mesh]) -> float:
         """Largest error; of the largest pressure only where the pressure is not singular."""
         measured = trial.values.keys() - {"max_pressure"}
         errors = [self._change(trial, name) for name in measured]
@@ -182,7 +182,7 @@ class MeshSearch(Generic[Mesh]):
             errors.append(self._peak_error(trial))
         return max(errors)
 
-    def singular(self, trial: Trial[Mesh]) -> bool:
+    def singular(self, trial: MeshTrial[Mesh]) -> bool:
         """Test whether the pressure becomes accurate in the mean only."""
         mean, largest = _of_pressure(trial)
         if mean > self.accuracy / 2 or self._peak_error(trial) <= self.accuracy:
@@ -190,13 +190,13 @@ class MeshSearch(Generic[Mesh]):
         before = map(_of_pressure, self.trials)
         return any(m >= _COARSER**2 * mean and p <= _COARSER * largest for m, p in before)
 
-    def _peak_error(self, trial: Trial[Mesh]) -> float:
+    def _peak_error(self, trial: MeshTrial[Mesh]) -> float:
         if trial.history:
             return self._change(trial, "max_pressure")
         mean, largest = _of_pressure(trial)
         return max(_PART_OF_MEAN * mean, largest)
 
-    def _change(self, trial: Trial[Mesh], quantity: str) -> float:
+    def _change(self, trial: MeshTrial[Mesh], quantity: str) -> float:
         """Error of a quantity from its change since the next coarser meshes, see the module."""
         error = trial.steering
         coarser = [each for each in self.trials if each.steering >= _COARSER * error]
@@ -212,8 +212,8 @@ class MeshSearch(Generic[Mesh]):
             for each in coarser[-_COMPARED:]
         )
 
-    def _first(self, start: Mesh) -> Trial[Mesh] | None:
-        """Trial of the first mesh, or of the next finer one on which there is a result."""
+    def _first(self, start: Mesh) -> MeshTrial[Mesh] | None:
+        """MeshTrial of the first mesh, or of the next finer one on which there is a result."""
         meshes = [start]
         for mesh in meshes:
             trial = self._try(mesh)
@@ -223,7 +223,7 @@ class MeshSearch(Generic[Mesh]):
             meshes += [finer for finer in around if finer is not None and finer not in meshes]
         return None
 
-    def _try(self, mesh: Mesh) -> Trial[Mesh] | None:
+    def _try(self, mesh: Mesh) -> MeshTrial[Mesh] | None:
         for known in self.trials:
             if known.mesh == mesh:
                 return known
@@ -233,17 +233,17 @@ class MeshSearch(Generic[Mesh]):
         return found
 
 
-def _unknowns(trial: Trial) -> int:
+def _unknowns(trial: MeshTrial) -> int:
     return trial.unknowns
 
 
-def _of_pressure(trial: Trial) -> tuple[float, float]:
+def _of_pressure(trial: MeshTrial) -> tuple[float, float]:
     """Estimated errors of the pressure in the mean, and of its largest value."""
     mean, largest = (trial.estimates.get(key, math.inf) for key in ("pressure", "max_pressure"))
     return mean, largest
 
 
-def rate(before: Trial, after: Trial) -> float:
+def rate(before: MeshTrial, after: MeshTrial) -> float:
     """Rate at which a change of the mesh reduces the error, see the module."""
     grown = max(math.log(after.unknowns / before.unknowns), _SAME)
     return math.log(before.steering / after.steering) / grown

@@ -13,7 +13,7 @@ from ...case.tables.schema import MOST_ELEMENTS, MeshTable
 from ...errors import CaseError, ComputationError
 from ...results import Result
 from ...timer import Phases
-from ..accuracy.mesh_search import MeshSearch, Trial
+from ..accuracy.mesh_search import MeshSearch, MeshTrial
 from ..analyses.run import run
 from ..runtime.observer import Observer
 from .analysis import analysis_of, model_of
@@ -108,7 +108,7 @@ def with_accurate_mesh(
     history = case.analysis.type not in ("initial", "steady", "stability")
     failures: list[CaseError | ComputationError] = []
 
-    def evaluate(size: MeshSize) -> Trial[MeshSize] | None:
+    def evaluate(size: MeshSize) -> MeshTrial[MeshSize] | None:
         """Result on a mesh; None if there is none."""
         try:
             result = _computed(_with(case, size), comm)
@@ -136,7 +136,7 @@ def _with(case: AnyCase, size: MeshSize) -> AnyCase:
     return case.model_copy(update={"mesh": MeshTable(**given)})
 
 
-def _found(search: MeshSearch[MeshSize], best: Trial[MeshSize]) -> str:
+def _found(search: MeshSearch[MeshSize], best: MeshTrial[MeshSize]) -> str:
     """Note on the mesh that was found, and on what it does not reach."""
     size, error = best.mesh, search.error(best)
     keys = ", ".join(f"mesh.{key} = {getattr(size, key):g}" for key in _KEYS)
@@ -162,7 +162,7 @@ def _computed(case: AnyCase, comm) -> Result:
     return result
 
 
-def _trial(size: MeshSize, result: Result, history: bool) -> Trial[MeshSize]:
+def _trial(size: MeshSize, result: Result, history: bool) -> MeshTrial[MeshSize]:
     """Errors on a mesh, by estimates and by values that are compared with those on other meshes.
 
     Raises
@@ -186,7 +186,7 @@ def _trial(size: MeshSize, result: Result, history: bool) -> Trial[MeshSize]:
     if hottest is not None and (history or "temperature" not in estimates):
         coldest = min(interface.temperature_1.min(), interface.temperature_2.min())
         values["temperature"] = (hottest, max(hottest - coldest, 1.0))
-    return Trial(size, summary["dofs_displacement"], history, estimates, values)
+    return MeshTrial(size, summary["dofs_displacement"], history, estimates, values)
 
 
 def _profile(result: Result) -> np.ndarray | float:

@@ -111,7 +111,7 @@ class MeshSearch(Generic[Mesh]):
     trials: list[MeshTrial[Mesh]] = field(default_factory=list)
 
     def best(self, start: Mesh) -> MeshTrial[Mesh] | None:
-        """MeshTrial with few unknowns that reaches the accuracy, or the last one if none does.
+        """Trial with few unknowns that reaches the accuracy, or the last one if none does.
 
         None if there is no result on any mesh.
         """
@@ -140,7 +140,7 @@ class MeshSearch(Generic[Mesh]):
         return name if name and rates[name] > _SLOWEST else None
 
     def _straight(self, trial: MeshTrial[Mesh], name: str) -> MeshTrial[Mesh]:
-        """MeshTrial after some steps of one kind, as long as they reduce the error."""
+        """Trial after some steps of one kind, as long as they reduce the error."""
         for _ in range(_STRAIGHT):
             after = self._around(trial, {name: self.steps[name]}).get(name)
             if after is None or not (self.reached(after) or rate(trial, after) > _SLOWEST):
@@ -151,13 +151,13 @@ class MeshSearch(Generic[Mesh]):
         return trial
 
     def _refined(self, trial: MeshTrial[Mesh]) -> MeshTrial[Mesh] | None:
-        """MeshTrial with most unknowns one step away, where no step reduces the error by itself."""
+        """Trial with most unknowns one step away, where no step reduces the error by itself."""
         around = self._around(trial, self.steps).values()
         finer = [each for each in around if each.unknowns > _FINER * trial.unknowns]
         return max(finer, key=_unknowns) if finer else None
 
     def _coarser(self, trial: MeshTrial[Mesh]) -> MeshTrial[Mesh] | None:
-        """MeshTrial with fewest unknowns one step back that reaches the accuracy, too; None if none."""
+        """Trial with fewest unknowns one step back that reaches the accuracy, too; None if none."""
         around = self._around(trial, self.back).values()
         good = [each for each in around if each.unknowns < trial.unknowns and self.reached(each)]
         return min(good, key=_unknowns) if good else None
@@ -213,7 +213,7 @@ class MeshSearch(Generic[Mesh]):
         )
 
     def _first(self, start: Mesh) -> MeshTrial[Mesh] | None:
-        """MeshTrial of the first mesh, or of the next finer one on which there is a result."""
+        """Trial of the first mesh, or of the next finer one on which there is a result."""
         meshes = [start]
         for mesh in meshes:
             trial = self._try(mesh)

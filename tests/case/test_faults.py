@@ -39,7 +39,7 @@ NAMES = [
         "key of another table",
         {"mesh.friction": 0.2},
         "mesh.friction",
-        "known: bodies, contact_size, degree",
+        "known: accuracy, bodies, contact_size",
     ),
     Bad("key of another analysis", {TIMES: ["1 s"]}, TIMES, "unknown key here"),
     Bad("key named as an analysis", {"analysis.steady": 1}, "analysis.steady", "unknown key"),

@@ -1,5 +1,6 @@
 """Command ``shape``."""
 
+import json
 from pathlib import Path
 
 import meshio
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 from thermowear.app.cli import main
+from thermowear.case import starters
 from thermowear.case.starters import starter_text
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 
@@ -123,3 +125,20 @@ def test_one_process(monkeypatch, capsys):
     monkeypatch.setattr("time.sleep", lambda _: None)
     assert run("annular-punch.toml", "-o", "d.csv") == 1
     assert not Path("d.csv").exists()
+
+
+def test_tetrahedra_of_a_mesh_file(capsys):
+    """requirement: a solid of the pad, and a run that begins with its face."""
+    for ending in ("toml", "msh"):
+        name = f"own-mesh-3d.{ending}"
+        Path(name).write_bytes((Path(starters.__file__).parent / name).read_bytes())
+    assert main(["shape", "own-mesh-3d.toml", "-o", "pad.step"]) == 0
+    with gmsh_model("read") as gmsh:
+        ((dim, _),) = gmsh.model.occ.importShapes("pad.step")
+        assert dim == 3
+    words = ["run", "own-mesh-3d.toml", "-o", "worn", "--no-pictures"]
+    words += ["--set", "geometry.initial_shape=pad.step", "--set", 'analysis={type="initial"}']
+    assert main(words) == 0
+    shaped = json.loads(Path("worn/summary.json").read_text("utf-8"))
+    # even from the start: the mean pressure of the case
+    assert shaped["max_pressure_Pa"] == pytest.approx(10e6, rel=0.03)

@@ -35,7 +35,12 @@ POINTWISE = {"contact.method": "pointwise"}
 
 NAMES = [
     Bad("unknown key", {"mesh.elemnts": 4}, "mesh.elemnts", "did you mean elements?"),
-    Bad("key of another table", {"mesh.friction": 0.2}, "mesh.friction", "known: bodies, degree"),
+    Bad(
+        "key of another table",
+        {"mesh.friction": 0.2},
+        "mesh.friction",
+        "known: accuracy, bodies, contact_size",
+    ),
     Bad("key of another analysis", {TIMES: ["1 s"]}, TIMES, "unknown key here"),
     Bad("key named as an analysis", {"analysis.steady": 1}, "analysis.steady", "unknown key"),
     Bad("unknown table", {"geometri": {}}, "geometri", "did you mean geometry?"),

@@ -3,7 +3,7 @@
 import numpy as np
 
 from thermowear.contact.friction.stick_slip_state import Loads
-from thermowear.contact.operators.tangential import HeldMotion, frictional_contact
+from thermowear.contact.operators.frictional_contact import HeldMotion, frictional_contact
 from thermowear.laws.motions import translation
 
 PRESS = HeldMotion(translation((0.0, -1.0)), role="press")

@@ -12,6 +12,7 @@ from thermowear.contact.friction.coulomb import (
     CoulombProblem,
     CoulombSolution,
     jacobian,
+    newton_step,
     residual,
     violated,
 )
@@ -198,3 +199,21 @@ def test_every_violation_is_seen(condition):
     assert condition in violated(problem, solution)
     right = CoulombSolution(np.ones(2), np.zeros((2, 1)), motion, sticking, 0)
     assert condition == "equilibrium" or not violated(problem, right)
+
+
+@pytest.mark.parametrize("directions", [1, 2])
+def test_open_coefficients_are_eliminated(directions):
+    """requirement: Newton's step is that of the whole system, wherever it starts."""
+    for seed in range(8):
+        problem = random_problem(seed, directions, forced=True)
+        rng = np.random.default_rng(seed + 1)
+        solution = solve(problem)
+        start = np.concatenate([solution.stacked, solution.motion])
+        start = start + 0.2 * np.abs(start).max() * rng.normal(size=len(start))
+        error = residual(problem, start)
+        matrix, found = jacobian(problem, start), newton_step(problem, start, error)
+        if np.linalg.matrix_rank(matrix) < len(matrix):  # nothing closed carries the forces
+            assert found is None
+            continue
+        whole = np.linalg.solve(matrix, -error)
+        np.testing.assert_allclose(found, whole, atol=1e-8 * np.abs(whole).max())

@@ -1,5 +1,7 @@
 """Contact in space: the patch test, and the same bodies computed by the plane models."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -15,7 +17,7 @@ from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
+from thermowear.contact.search.pairing import pair, paired
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.laws.motions import rotation, translation
 from thermowear.reference import slabs
@@ -195,3 +197,17 @@ def test_two_slabs_with_friction_heat(h, divisions, place, cell_type):
     rises, fluxes = slabs.contact_temperatures(*slab, 1e5, 0.3, h)
     for found, exact in zip((*state.rise, *state.flux), (*rises, *fluxes), strict=True):
         np.testing.assert_allclose(found, exact, rtol=1e-9, atol=1e-6)
+
+
+def test_merged_points_stay_merged():
+    """Their number does not depend on the rounding of a face that has moved."""
+    _, (first, second) = gathered(solids())
+    before = pair(first, second, Spatial(), 3)
+    nodes = first.nodes.copy()
+    nodes[0] += (1e-9 * first.extent, 0.0, 0.0)
+    moved = replace(first, nodes=nodes)
+    after = paired(moved, second, Spatial(), before.pieces)
+    assert len(after.weights) == len(before.weights)
+    apart = paired(moved, second, Spatial(), replace(before.pieces, point=None))
+    assert len(apart.weights) > len(before.weights)
+    assert after.weights.sum() == pytest.approx(before.weights.sum(), rel=1e-6)

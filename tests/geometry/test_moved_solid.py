@@ -59,8 +59,8 @@ def test_the_volume_lost_is_that_of_the_mesh(order, name, cell_type):
 
 @pytest.mark.parametrize("cell_type", CELLS)
 def test_the_rim_goes_along_the_sides(cell_type):
-    """requirement: the rim moves along slanted sides, at corners along the edge between two; rows
-    of hexahedra are followed, in sides of triangles it moves normal to itself.
+    """requirement: the rim moves along slanted sides and the edges between them; paths inside
+    of the face turn towards it, as they must not cross.
     """
 
     def slanted(p):
@@ -71,22 +71,33 @@ def test_the_rim_goes_along_the_sides(cell_type):
     normals = np.tile((0.0, 0.0, -1.0), (len(face), 1))
     directions, held = body.motion_paths(normals)
     assert not held.any()
-    x, y, _ = face.T
-    rim = (x < 1e-9) | (x > SIZE[0] - 1e-9) | (y < 1e-9) | (y > SIZE[1] - 1e-9)
     along = -np.array((0.5, -0.25, 1.0)) / np.linalg.norm((0.5, -0.25, 1.0))
-    corner = rim & np.isin(x, (x.min(), x.max())) & np.isin(y, (y.min(), y.max()))
-    followed_rows = rim if cell_type == "hexahedron" else corner
-    expected = np.tile(along, (followed_rows.sum(), 1))
-    assert corner.sum() == 4
-    assert directions[followed_rows] == pytest.approx(expected, abs=1e-12)
-    if cell_type == "tetrahedron":
-        inner = rim & ~corner & (x < 1e-9)
-        normal = -np.array((0.5, 0.0, 1.0)) / np.linalg.norm((0.5, 1.0))
-        assert directions[inner] == pytest.approx(np.tile(normal, (inner.sum(), 1)), abs=1e-12)
-    assert np.array_equal(directions[~rim], normals[~rim])
+    assert directions == pytest.approx(np.tile(along, (len(face), 1)), abs=1e-12)
     points = followed(mesh, body.outlined(-4e-3 * directions))
     side = mesh.facets[mesh.facet_tags == mesh.surfaces.index("upper_low_x") + 1]
     assert points[side][..., 0] == pytest.approx(0.5 * points[side][..., 2], abs=1e-12)
+
+
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_paths_turn_gradually(cell_type):
+    """Between slanted and upright sides, from one side of the face to the other, linearly."""
+
+    def wedge(p):
+        x, y, z = np.moveaxis(p, -1, 0)
+        return np.stack([x + 0.5 * z * (1 - x / SIZE[0]), y, z], axis=-1)
+
+    body, face, _ = upper(1, wedge, cell_type=cell_type)
+    directions, _ = body.motion_paths(np.tile((0.0, 0.0, -1.0), (len(face), 1)))
+    slope = -np.array((0.5, 0.0, 1.0)) / np.linalg.norm((0.5, 1.0))
+    part = (1 - face[:, 0] / SIZE[0])[:, None]
+    expected = (1 - part) * (0.0, 0.0, -1.0) + part * slope
+    expected /= np.linalg.norm(expected, axis=1, keepdims=True)
+    inner = (face[:, 1] > 1e-9) & (face[:, 1] < SIZE[1] - 1e-9)
+    at_sides = np.isclose(face[:, 0], 0.0) | np.isclose(face[:, 0], SIZE[0])
+    assert directions[at_sides] == pytest.approx(expected[at_sides], abs=1e-12)
+    off = np.abs(directions - expected).max(axis=1)
+    assert off[inner].max() < 0.03
+    assert np.all(np.diff(np.unique(np.round(directions[inner, 0], 3))) > 0.0)
 
 
 @pytest.mark.parametrize("cell_type", CELLS)

@@ -1,19 +1,25 @@
 """STEP files of worn bodies, read back by the kernel that CAD has too."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.bulk.mesh_motion import serial_extension
 from thermowear.errors import CaseError
 from thermowear.geometry.cad.design import Design
+from thermowear.geometry.cad.faceted import write_faceted
 from thermowear.geometry.cad.step import face_grid, write_prism, write_section
-from thermowear.geometry.cad.worn_body import only_body
+from thermowear.geometry.cad.worn_body import moved_body, only_body
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
+from thermowear.verification.spherical_pin import SphericalPin
 
 from ..case.starter import STEADY
+from ..contact.solids import two_solids
 from ..simulation.space import BRAKE, PUNCH
+from .measure import volumes
 from .test_design import ARC, HEIGHT, INNER, OUTER, RADIUS, body_of, flat, round_one, waves
 
 KERNEL = 1e-5  # of the volume: how well OpenCASCADE integrates over B-splines
@@ -176,3 +182,56 @@ def test_nothing_is_said(tmp_path, capfd):
     mesh, face = body_of(STEADY)
     write_section(mesh, flat(), face, tmp_path / "ring.step", turn=1.0)
     assert capfd.readouterr() == ("", "")
+
+
+# ---- of any shape ----
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_body_of_tetrahedra(tmp_path, order):
+    """requirement: one solid with the volume of the mesh; plane sides are single faces."""
+    pin = SphericalPin(10e-3, 6e-3, 10e-3, (9e-3, 6e-3), 2e-3, order)
+    mesh = only_body(pin.write(tmp_path / "pin.msh"), ("pin",))
+    write_faceted(mesh, "pin_face", tmp_path / "pin.step")
+    volume, box, kinds = read(tmp_path / "pin.step")
+    # triangles between the nodes are within 1 % of curved facets
+    known = 1e9 * volumes(mesh, "pin").sum()
+    assert volume == pytest.approx(known, rel=KERNEL if order == 1 else 0.01)
+    assert box[1] == pytest.approx([6, 6, 10], rel=1e-3)
+    assert set(kinds) == {"Plane"}
+    worn, curved = (len(mesh.facets_of(f"pin_{name}")) for name in ("face", "side"))
+    others = len(kinds) - 3 - order**2 * worn  # without the top and planes of symmetry
+    assert curved <= others <= order**2 * curved
+
+
+def test_the_face_of_tetrahedra_sinks(tmp_path):
+    """requirement: by the depth of the design, and the volume with it."""
+    mesh = only_body(
+        SphericalPin(1.0, 6e-3, 10e-3, (9e-3, 6e-3), 1.5e-3).write(tmp_path / "pin.msh"), ("pin",)
+    )
+    points = mesh.points[np.unique(mesh.facets_of("pin_face"))]
+    depth = 1e-4 * (1 + points[:, 0] / 6e-3)
+    moved = moved_body(mesh, in_space(points, depth), "pin_face", serial_extension)
+    on_face = np.unique(mesh.facets_of("pin_face"))
+    assert (moved - mesh.points)[on_face, 2] == pytest.approx(depth, rel=1e-4, abs=0.0)
+    worn = replace(mesh, points=moved)
+    lost = volumes(mesh, "pin").sum() - volumes(worn, "pin").sum()
+    assert lost == pytest.approx(1e-4 * 36e-6 * (math.pi / 4 + 1 / 3), rel=1e-3, abs=0.0)
+    write_faceted(worn, "pin_face", tmp_path / "worn.step")
+    found = read(tmp_path / "worn.step")[0]
+    write_faceted(mesh, "pin_face", tmp_path / "pin.step")
+    assert read(tmp_path / "pin.step")[0] - found == pytest.approx(1e9 * lost, rel=0.02)
+
+
+def test_a_hollow_solid(tmp_path):
+    """requirement: a cavity is no part of the solid."""
+    mesh = two_solids(((4, 4, 4), (2, 2, 2)), 1, cell_type="tetrahedron")
+    middle = mesh.points[mesh.cells].mean(axis=1)
+    upper = mesh.points[mesh.cells[mesh.cell_tags == 1]].reshape(-1, 3)
+    part = (middle - upper.min(axis=0)) / np.ptp(upper, axis=0)
+    hollow = (mesh.cell_tags == 1) & ~np.all((part > 0.25) & (part < 0.75), axis=1)
+    mesh = replace(mesh, cells=mesh.cells[hollow], cell_tags=mesh.cell_tags[hollow])
+    write_faceted(mesh, "upper_face", tmp_path / "hollow.step")
+    volume, *_ = read(tmp_path / "hollow.step")
+    assert volume == pytest.approx(1e9 * volumes(mesh, "upper").sum(), rel=KERNEL)
+    assert volume == pytest.approx(1e9 * np.ptp(upper, axis=0).prod() * 7 / 8, rel=KERNEL)

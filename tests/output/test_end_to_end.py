@@ -23,6 +23,8 @@ from ..case import starter
 from ..case.starter import FRETTING, HERTZ, PUNCH, RECIPROCATING, RUNNING_IN, SPHERE, STEADY
 from ..systems import prepared
 
+SPACE = "sphere-fretting"
+VECTORS = ",z_m,shear_x_Pa,shear_y_Pa,shear_z_Pa,slip_x_m,slip_y_m,slip_z_m"
 COATED = ("sphere-on-block-coated", "shaft-in-bush-coated")
 PAIRS = [name for name in starters() if "[holders." not in starter_text(name)]
 
@@ -63,6 +65,13 @@ QUICK = {
     "shaft-in-bush-coated": ("geometry.zone=6 mm",),  # coarse faces end farther away
     "tube-in-support": ("mesh.degree=2", "analysis.cycles=8000")
     + ('analysis.output_times=["200 s"]',),
+    "sphere-fretting": (
+        "mesh.degree=2",
+        "mesh.elements=4",
+        "analysis.increments=2",
+        "wear.cycles=2",
+    )
+    + ('analysis.output_times=["62.5 ms"]',),
     "cylinder-fretting": ("mesh.degree=2", "wear.cycles=20", 'analysis.output_times=["1 s"]'),
 }
 HEADS = {
@@ -86,6 +95,8 @@ HEADS = {
     "contacts": "time_s,contact,normal_force_N,friction_power_W,max_pressure_Pa,contact_area_m2,"
     "wear_volume_1_m3,wear_volume_2_m3,max_temperature_1_K,max_temperature_2_K",
     "sticking": "time_s,contact,friction_force_N,stick_area_m2,dissipated_J,cycle",
+    "tangential": "time_s,holder,force_x_N,force_y_N,displacement_x_m,displacement_y_m,torque_Nm,"
+    "twist_rad",
     "holders": "time_s,holder,normal_force_N,approach_m,tangential_force_N,"
     "tangential_displacement_m,moment_Nm,rotation_rad",
     "history": "time_s,sliding_distance_m,max_pressure_Pa,contact_area_m2,wear_volume_1_m3,"
@@ -130,6 +141,7 @@ def test_a_starter_leaves_its_files(finished):
         more = {"loads.csv", "cycles.csv", *(f"friction{time}.csv" for time in at)}
         more |= {"checkpoint.npz"}
         more |= {f"interface{time}.csv" for time in at}
+        more |= {"tangential.csv"} if case.model == "3d" else set()
     if analysis.type == "transient":
         more = {"history.csv", *(f"interface_{time:g}.csv" for time in analysis.output_times)}
         more |= {"checkpoint.npz"}
@@ -146,7 +158,8 @@ def test_the_columns_are_those_of_the_contract(finished):
     for path in folder.glob("*.csv"):
         head, stem = path.read_text(encoding="utf-8").splitlines()[0], path.stem.partition("_")[0]
         coated = name in COATED and stem == "interface"
-        assert head == HEADS[stem] + (",coating_left_1_m" if coated else ""), path
+        vectors = VECTORS if name == SPACE and stem == "friction" else ""
+        assert head == HEADS[stem] + (",coating_left_1_m" if coated else "") + vectors, path
 
 
 def test_the_resolved_case_is_the_same_case(finished):

@@ -9,9 +9,9 @@ import pytest
 import tomli_w
 
 from thermowear.app.cli import main
-from thermowear.output.pictures.maps import triangulated
+from thermowear.output.pictures.maps import draw_friction_maps, triangulated
 
-from ..case.starter import changed
+from ..case.starter import changed, tables
 from ..simulation.space import BRAKE, PUNCH
 
 
@@ -52,6 +52,11 @@ def test_the_bay_of_a_sector_is_left_out(angle):
     assert found == pytest.approx(np.radians(angle) / 2 * (120**2 - 80**2), rel=5e-3)
 
 
+CURVES = "history", "loads", "cycles"
+BALL = {"mesh.elements": 6, "analysis.increments": 3, "wear.cycles": 2}
+BALL |= {"analysis.output_times": ["0.0625 s"]}
+
+
 @pytest.fixture(scope="module")
 def folder_of(tmp_path_factory):
     """Results of a running-in or of a steady run, with their pictures, by name."""
@@ -59,6 +64,7 @@ def folder_of(tmp_path_factory):
     cases = {
         "punch": changed(PUNCH, {"analysis": ending, "wear.block": {"coefficient": "1e-7 1/MPa"}}),
         "brake": BRAKE,
+        "ball": tables("sphere-fretting", BALL),
     }
 
     @cache
@@ -75,6 +81,11 @@ def folder_of(tmp_path_factory):
     ("name", "pictures"),
     [
         ("punch", {"interface", "wear", "history", "bodies", "deformed", "faces"}),
+        pytest.param(
+            "ball",
+            {"interface", "wear", "friction", "loads", "cycles", "bodies", "deformed", "faces"},
+            marks=pytest.mark.slow,
+        ),
         pytest.param("brake", {"interface", "bodies", "deformed", "faces"}, marks=pytest.mark.slow),
     ],
 )
@@ -86,7 +97,7 @@ def test_every_picture_shows_something(folder_of, name, pictures):
         image = mpimg.imread(path)[..., :3]
         assert min(image.shape[:2]) > 400, path
         coloured = (image.max(axis=2) - image.min(axis=2)) > 0.1
-        assert coloured.mean() > (0.003 if path.stem == "history" else 0.05), path
+        assert coloured.mean() > (0.003 if path.stem in CURVES else 0.05), path
 
 
 def test_the_fields_are_volumes(folder_of):
@@ -95,3 +106,38 @@ def test_the_fields_are_volumes(folder_of):
     assert {block.type for block in mesh.cells} == {"hexahedron"}
     assert np.ptp(mesh.points, axis=0) == pytest.approx([0.12, 0.14, 0.11])
     assert mesh.point_data["displacement_m"].shape[1] == 3
+
+
+def test_friction_in_space_is_drawn_with_its_direction(tmp_path):
+    """requirement: maps of shear and slip with arrows, energy, and what sticks and slips."""
+    angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    x, y = grid(1e-3 * np.linspace(0.1, 1, 6), angle)
+    x, y = x * np.cos(y), x * np.sin(y)
+    size = np.hypot(x, y)
+    names = "x_m", "y_m", "z_m", "s_m", "shear_Pa", "shear_x_Pa", "shear_y_Pa", "slip_m"
+    names += "slip_x_m", "slip_y_m", "dissipated_J_per_m2", "status"
+    columns = x, y, 0 * x, np.nan * x, 1e9 * size, 1e9 * x, 1e9 * y, size, -x, -y, size**2
+    table = np.column_stack([*columns, np.where(size < 5e-4, 1, 2)])
+    np.savetxt(tmp_path / "friction.csv", table, delimiter=",", header=",".join(names), comments="")
+    draw_friction_maps(tmp_path)
+    image = mpimg.imread(tmp_path / "friction.png")[..., :3]
+    assert ((image.max(axis=2) - image.min(axis=2)) > 0.1).mean() > 0.2
+
+
+@pytest.mark.parametrize("graded", [False, True])
+def test_slots_are_left_out(graded):
+    """requirement: nothing is drawn across a slot that separates the points of a face."""
+    along = 30 * GRADED if graded else np.linspace(0.0, 30.0, 31)
+    x, y = grid(np.linspace(0.0, 40.0, 81), np.concatenate([along, 36 + along]))
+    steps = np.gradient(along)
+    weights = np.tile(np.concatenate([steps, steps]) * 0.5, 81)
+    assert areas(triangulated(x, y)).sum() == pytest.approx(40 * 66, rel=1e-6)
+    assert areas(triangulated(x, y, weights)).sum() == pytest.approx(2 * 40 * 30, rel=0.02)
+
+
+def test_small_weights_tear_no_holes():
+    """requirement: points of small pieces of facets do not take triangles out of a face."""
+    rng = np.random.default_rng(5)
+    x, y = grid(np.linspace(0.0, 40.0, 41), np.linspace(0.0, 40.0, 41))
+    weights = np.where(rng.random(len(x)) < 0.1, 1e-3, 1.0)
+    assert areas(triangulated(x, y, weights)).sum() == pytest.approx(40 * 40, rel=1e-9)

@@ -40,7 +40,7 @@ def rows(result):
     """All rows of all tables that grow on the way."""
     found = [*result.history, *result.heat]
     if result.friction is not None:
-        found += [*result.friction.rows, *result.friction.cycles]
+        found += [*result.friction.rows, *result.friction.tangential, *result.friction.cycles]
     return [astuple(row) for row in found]
 
 
@@ -107,6 +107,12 @@ def assert_the_same(one, other):
             + ("analysis.output_times=['2.01 s']",),
             id="fretting-fixed-jumps",
             marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            DEMOS / "sphere_fretting.toml",
+            ("mesh.elements=4", "analysis.increments=2", "wear.cycles=200")
+            + ("analysis.output_times=['0.0625 s']",),
+            id="fretting-in-space",
         ),
         pytest.param(
             DEMOS / "punch_on_strip_reciprocating.toml",

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermowear.contact.friction.coulomb_solver import FullSliding
+from thermowear.contact.friction.gross_slip import FullSliding
 from thermowear.contact.friction.stick_slip_state import StickSlipState
 from thermowear.errors import ComputationError
 from thermowear.simulation.cycles.cycle_jump import adaptive_jumps, fixed_jumps

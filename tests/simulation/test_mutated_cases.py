@@ -24,6 +24,7 @@ import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.balances import ALLOWED, BALANCES
 from thermowear.errors import CaseNote
+from thermowear.output.files import name_at
 
 from ..case.mutations import mutated
 
@@ -104,17 +105,26 @@ def possible(case: tw.Case, results: Path, where: str) -> None:
     assert json.loads((results / "run.json").read_text())["status"] == "done", where
     for name in BALANCES:
         assert summary.get(name) is None or abs(summary[name]) <= ALLOWED, f"{name}: {where}"
+    contacts = summary.get("contacts", {})
+    for name, numbers in contacts.items() or [("", summary)]:
+        possible_contact(results / name_at("interface", None, name), numbers, where)
+    if not isinstance(case, tw.Case):
+        return
     given = case.force()
     if given is not None and case.load.history is None and case.load.lever is None:
         assert summary["normal_force_N"] == pytest.approx(given, rel=1e-6), where
-    names = (results / "interface.csv").read_text().partition("\n")[0].split(",")
-    rows = np.loadtxt(results / "interface.csv", delimiter=",", skiprows=1, ndmin=2)
+
+
+def possible_contact(path: Path, numbers: dict, where: str) -> None:
+    """Assert properties of the table of a contact, and of its numbers."""
+    names = path.read_text().partition("\n")[0].split(",")
+    rows = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
     table = dict(zip(names, rows.T, strict=True))
     pressure, weight = table["pressure_Pa"], table["weight_m2"]
     assert np.isfinite(pressure).all(), where
     assert pressure.min() >= -1e-6 * pressure.max(), where
     assert (weight >= 0.0).all(), where
-    carried = summary["mean_pressure_Pa"] * summary["contact_area_m2"]
+    carried = numbers["mean_pressure_Pa"] * numbers["contact_area_m2"]
     assert weight @ pressure == pytest.approx(carried, rel=1e-6), where
     for body in (1, 2):
         temperature = table[f"temperature_{body}_K"]

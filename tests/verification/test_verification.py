@@ -14,10 +14,10 @@ from thermowear.verification.check import computed, starter
 LONG = SLOW | {
     "annular-punch", "beam-shakedown", "block-on-ring", "braking-stop", "case-2", "case-3",
     "case-4", "case-5", "case-6", "case-7", "case-8", "case-9", "clutch-pack", "coated-bush",
-    "coating", "floating-caliper", "fretting-cylinder",
+    "coating", "deep-wear-3d", "floating-caliper", "fretting-cylinder", "fretting-sphere",
     "fretting-wear", "fuel-fretting", "growing-cylinder", "growing-sphere",
     "half-plane-instability", "hertz-elliptical", "hertz-line", "layer-instability",
-    "methods-agree", "mindlin",
+    "methods-agree", "mindlin", "mindlin-sphere",
     "minimality", "moving-band", "optimal-shape", "pad-disk-pad", "patch", "pin-on-disk-3d",
     "pressure-conductance", "reciprocating", "ring-3d", "running-in", "sliding-rod", "step-flux",
     "temperature-dependent", "two-shoes", "two-slabs",

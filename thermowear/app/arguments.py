@@ -59,7 +59,9 @@ def parser() -> argparse.ArgumentParser:
 
     _add_case(_command(commands, "validate", "check a case without computing it"))
 
-    mesh = _command(commands, "mesh", "write the mesh of a case (.msh .vtu .xdmf .inp)")
+    mesh = _command(
+        commands, "mesh", "write the mesh of a case (.msh .vtu .xdmf .inp; .png: picture)"
+    )
     _add_case(mesh)
     _add_output(mesh, "FILE", required=True)
     _add_flag(mesh, "--overwrite")

@@ -132,14 +132,29 @@ def _validate(chosen) -> int:
 
 
 def _mesh(chosen) -> int:
+    from ..geometry.checks.mesh_checks import whole_bodies
     from ..geometry.mesh.mixed import count_cells
     from ..geometry.reading.export import check_ending, write_mesh
+    from ..output.pictures import make_mesh_picture
 
-    check_ending(chosen.output)
+    is_picture = chosen.output.suffix == ".png"
+    if not is_picture:
+        check_ending(chosen.output)
     case = load(chosen.case, tuple(chosen.overrides))
+    if is_picture and case.model != "3d":
+        raise CaseError(f"-o {chosen.output}: pictures of meshes require a 3d model")
     _check_absent(chosen.output, chosen.overwrite)
+    if case.mesh.accuracy is not None:
+        from ..simulation.from_case import with_accurate_mesh
+        from .workers import start_petsc
+
+        start_petsc()
+        case = with_accurate_mesh(case)
     mesh = case.tagged_mesh()
-    write_mesh(mesh, chosen.output)
+    if is_picture:
+        make_mesh_picture(whole_bodies(mesh, case.geometry), chosen.output)
+    else:
+        write_mesh(mesh, chosen.output)
     print(f"wrote {chosen.output}: {count_cells(mesh)} cells, {len(mesh.points)} points")
     return 0
 

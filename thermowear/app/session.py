@@ -13,11 +13,18 @@ from ..errors import CaseError, ComputationError, UnwritableError
 from ..output.checkpoint import CHECKPOINT
 from ..output.console import ConsoleProgress, Terminal, print_discretisations, print_summary
 from ..output.folder import ResultsFolder
-from ..output.resuming import ResumedFolder, about_checkpoint, is_finished, last_checkpoint
+from ..output.resuming import (
+    ResumedFolder,
+    about_checkpoint,
+    is_finished,
+    last_checkpoint,
+    on_its_mesh,
+)
 from ..parallel import on_root
 from ..results import Frame, HistoryRow, InterfaceFields, LoadRow
 from ..serialise import Checkpoint, pack
 from ..simulation import Observer, run
+from ..simulation.from_case import with_accurate_mesh
 from ..simulation.runtime.observer import AnyRow, Saved
 from ..timer import Phases
 
@@ -107,6 +114,8 @@ def run_session(chosen, comm, import_seconds: float) -> int:
     path = chosen.output or Path("results") / chosen.case.stem
     plain = False if comm.size > 1 else None  # a launcher's pseudo-terminal is no real one
     console = Terminal(highlight=False, quiet=comm.rank != 0, force_terminal=plain)
+    if chosen.resume:
+        case = on_root(comm, lambda: on_its_mesh(path, case))
     if chosen.resume and on_root(comm, lambda: is_finished(path, case)):
         text = f"{path}: the run is complete, nothing is left to compute"
         console.print(text, markup=False, soft_wrap=True)
@@ -122,6 +131,11 @@ def run_session(chosen, comm, import_seconds: float) -> int:
             recorder = Recorder(comm, folder, shown, case)
             phases = Phases(recorder.phase)
             phases.add("import", import_seconds)
+            meshed = with_accurate_mesh(case, comm, recorder, phases)
+            if meshed is not case:
+                case = meshed
+                on_root(comm, lambda: _writing(lambda: folder.describe(as_plain(case))))
+                recorder = Recorder(comm, folder, shown, case)
             result = run(case, comm, recorder, phases, saved)
             if chosen.accuracy and result.stopped is None:
                 with phases("coarser and finer"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +11,9 @@ from .. import load
 from ..case import AnyCase, as_plain
 from ..errors import CaseError
 from ..geometry.cad.design import CARRIERS, Design, add_table, write_table
+from ..geometry.cad.faceted import write_faceted
 from ..geometry.cad.step import write_prism, write_section
-from ..geometry.cad.worn_body import only_body, write_design_mesh
+from ..geometry.cad.worn_body import moved_body, only_body, write_design_mesh
 from ..geometry.mesh.mixed import block_of
 from ..model.body import Body
 from ..model.model import Model
@@ -108,10 +109,10 @@ def shape(
 
     from ..simulation.analyses.design import steady_design
     from ..simulation.analyses.positioning import prepare
-    from ..simulation.from_case import model_of
+    from ..simulation.from_case import model_of, with_accurate_mesh
     from ..timer import Phases
 
-    case = steady_case(source, overrides)
+    case = with_accurate_mesh(steady_case(source, overrides), MPI.COMM_SELF)
     model = model_of(case)
     number, side = _place(model, body, face)
     interface = model.interfaces[number]
@@ -169,10 +170,13 @@ def write_shape(shaped: Shaped, path: Path) -> None:
     geometry: Any = case.geometry
     parts = geometry.parts_of(shaped.body.name)
     mesh = only_body(block_of(case.tagged_mesh(), *parts), parts)
-    if path.suffix != ".step":
-        from ..bulk.mesh_motion import serial_extension
+    from ..bulk.mesh_motion import serial_extension
 
+    if path.suffix != ".step":
         write_design_mesh(mesh, design, face, path, serial_extension)
+    elif mesh.cell_type == "tetrahedron":
+        points = moved_body(mesh, design, face, serial_extension)
+        write_faceted(replace(mesh, points=points), face, path)
     elif model.kinematics == "3d":
         write_prism(mesh, design, face, path)
     elif model.kinematics == "axisymmetric":

@@ -51,7 +51,7 @@ def sweep(
         If a stop was requested during a variant; no further one is computed.
     """
     from ..simulation.analyses.run import Series, groups
-    from ..simulation.from_case import analysis_of, model_of
+    from ..simulation.from_case import analysis_of, model_of, with_accurate_mesh
 
     source = as_plain(case) if isinstance(case, AnyCase) else case
     found = variants(source, {key: [written(v) for v in values] for key, values in over.items()})
@@ -61,6 +61,7 @@ def sweep(
         for k in group:
             try:
                 case = found[k].case
+                case = with_accurate_mesh(case, series.comm)
                 result = series.run(model_of(case), analysis_of(case))
             except ComputationError as error:
                 results[k] = error
@@ -158,7 +159,7 @@ def compute(jobs: list[Job], tell: Callable[[Ended], None]) -> None:
 
 
 def _computed(series, job: Job) -> Ended:
-    from ..simulation.from_case import analysis_of, model_of
+    from ..simulation.from_case import analysis_of, model_of, with_accurate_mesh
     from ..timer import Phases
     from .session import Recorder
 
@@ -168,6 +169,8 @@ def _computed(series, job: Job) -> Ended:
         folder = ResultsFolder(job.path, job.tables, 1, overwrite=True)
         try:
             observer, case = Recorder(series.comm, folder), load(job.tables)
+            case = with_accurate_mesh(case, series.comm, observer, phases)
+            folder.describe(as_plain(case))
             result = series.run(model_of(case), analysis_of(case), observer, phases)
             with phases("write"):
                 folder.finish(result, phases.seconds)

@@ -9,7 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 _CLOSED = 1e-9  # of the largest value: a cycle that ends so near to its begin is closed
-KEYS = ("force", "approach", "tangential_force", "tangential_displacement", "moment")
+TANGENTIAL = (
+    ("tangential_force", "tangential_displacement"),
+    ("tangential_force_y", "tangential_displacement_y"),
+    ("torque", "twist"),
+)
+"""Tangential loads: force and displacement along the first direction, in space along the second
+one, and about the axis of the load."""
+KEYS = ("force", "approach", "moment", *(key for pair in TANGENTIAL for key in pair))
 
 
 @dataclass(frozen=True)
@@ -80,6 +87,11 @@ class LoadHistory(TimeCourse):
         with the loads of the last one [s].
     moment : tuple of float or None
         About the pivot in a section, anticlockwise [N m].
+    tangential_force_y, tangential_displacement_y : tuple of float or None
+        Along y in space [N, m]; at most one of them.
+    torque, twist : tuple of float or None
+        In space about the axis through the pivot against the load direction, by the right-hand rule
+        [N m, rad]; at most one of them.
     """
 
     force: tuple[float, ...] | None = None
@@ -88,11 +100,25 @@ class LoadHistory(TimeCourse):
     tangential_displacement: tuple[float, ...] | None = None
     cycle_start: float | None = None
     moment: tuple[float, ...] | None = None
+    tangential_force_y: tuple[float, ...] | None = None
+    tangential_displacement_y: tuple[float, ...] | None = None
+    torque: tuple[float, ...] | None = None
+    twist: tuple[float, ...] | None = None
 
     @property
     def tangential(self) -> bool:
-        """True if the holder has a tangential displacement or force."""
-        return self.tangential_force is not None or self.tangential_displacement is not None
+        """True if the holder has a tangential displacement or force, or a twist."""
+        return any(self.drives(number) for number in range(len(TANGENTIAL)))
+
+    def drives(self, number: int) -> bool:
+        """True if it has a load of those in `TANGENTIAL` of a number."""
+        return any(getattr(self, key) is not None for key in TANGENTIAL[number])
+
+    @property
+    def in_space(self) -> tuple[str, ...]:
+        """Keys of the loads that only bodies in space can have."""
+        keys = (key for pair in TANGENTIAL[1:] for key in pair)
+        return tuple(key for key in keys if getattr(self, key) is not None)
 
     @property
     def only_tangential(self) -> bool:

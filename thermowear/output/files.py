@@ -25,7 +25,8 @@ PICTURES = {
     "track": "Wear depths of both bodies along x, body 1 in the middle of its stroke.",
     "history": "Largest pressure and worn volume over time.",
     "heat": "Surface temperatures of both bodies, friction power and largest pressure over time.",
-    "friction": "Shear traction with its Coulomb limits, and slip, at the output times.",
+    "friction": "Shear traction with its Coulomb limits, and slip, at the output times; in space "
+    "maps of shear, slip, dissipated energy and status at the end.",
     "loads": "Tangential force over displacement, and dissipated energy over time.",
     "cycles": "Largest wear depth and worn volume over the cycles.",
     "mode": "Pressure perturbations: the fastest growing mode and the modes at critical speeds.",

@@ -83,9 +83,13 @@ class ResultsFolder:
             self._lock = Lock(path)
             self._claim(overwrite)
             self._write_run()
-            write_text(path / "case.resolved.toml", tomli_w.dumps(tables))
+            self.describe(tables)
         except OSError as error:
             raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
+
+    def describe(self, tables: dict) -> None:
+        """Write the case with all values that are used."""
+        write_text(self.path / "case.resolved.toml", tomli_w.dumps(tables))
 
     def _claim(self, overwrite: bool) -> None:
         """Remove earlier results if `overwrite` allows it."""

@@ -87,6 +87,23 @@ def is_finished(path: Path, case: Case) -> bool:
     return True
 
 
+def on_its_mesh(path: Path, case: Case) -> Case:
+    """Case on the mesh that the run of a folder chose for the same accuracy; else unchanged.
+
+    Raises
+    ------
+    CaseError
+        If there is no run.
+    """
+    read_run(path)
+    if case.mesh.accuracy is None:
+        return case
+    mesh = load(path / "case.resolved.toml").mesh
+    given = case.mesh.model_fields_set
+    same = all(getattr(mesh, key) == getattr(case.mesh, key) for key in given)
+    return case.model_copy(update={"mesh": mesh}) if same else case
+
+
 def last_checkpoint(
     path: Path, case: Case, ranks: int
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]] | None:

@@ -12,4 +12,13 @@ from .result import (
     Result,
     TrackHistory,
 )
-from .rows import ContactRow, CycleRow, HeatRow, HistoryRow, HolderRow, LoadRow, StickRow
+from .rows import (
+    ContactRow,
+    CycleRow,
+    HeatRow,
+    HistoryRow,
+    HolderRow,
+    LoadRow,
+    StickRow,
+    TangentialRow,
+)

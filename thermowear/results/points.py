@@ -101,11 +101,21 @@ class FrictionInterface:
     weight: np.ndarray = as_in(InterfaceFields)
     pressure: np.ndarray = as_in(InterfaceFields)
     shear: np.ndarray = column(
-        "shear traction on body 1", "Pa", "MPa", "along +x, or +y on a face along y"
+        "shear traction on body 1",
+        "Pa",
+        "MPa",
+        "along +x, or +y on a face along y; in space its magnitude",
     )
-    slip: np.ndarray = column("slip of body 1", "m", "µm", "relative to body 2, along the same")
+    slip: np.ndarray = column("slip of body 1", "m", "µm", "relative to body 2, likewise")
     dissipated: np.ndarray = column("dissipated energy", "J/m²", meaning="since the start")
     status: np.ndarray = column("status (0 open, 1 stick, 2 slip)")
+    z: np.ndarray = column("z", "m", "mm", "in space", optional=True)
+    shear_x: np.ndarray = column("shear traction along x", "Pa", "MPa", "in space", optional=True)
+    shear_y: np.ndarray = column("shear traction along y", "Pa", "MPa", "in space", optional=True)
+    shear_z: np.ndarray = column("shear traction along z", "Pa", "MPa", "in space", optional=True)
+    slip_x: np.ndarray = column("slip along x", "m", "µm", "in space", optional=True)
+    slip_y: np.ndarray = column("slip along y", "m", "µm", "in space", optional=True)
+    slip_z: np.ndarray = column("slip along z", "m", "µm", "in space", optional=True)
 
 
 @table(

@@ -9,7 +9,16 @@ import numpy as np
 
 from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack, by_contact
 from .quantity import from_key, table_of
-from .rows import ContactRow, CycleRow, HeatRow, HistoryRow, HolderRow, LoadRow, StickRow
+from .rows import (
+    ContactRow,
+    CycleRow,
+    HeatRow,
+    HistoryRow,
+    HolderRow,
+    LoadRow,
+    StickRow,
+    TangentialRow,
+)
 
 
 @dataclass(frozen=True)
@@ -29,6 +38,8 @@ class FrictionHistory:
         Contacts of several bodies by increment.
     holders : list of HolderRow
         Holders of several bodies by increment.
+    tangential : list of TangentialRow
+        Tangential loads of bodies in space by increment and holder.
     """
 
     rows: list[LoadRow]
@@ -37,6 +48,7 @@ class FrictionHistory:
     outputs: dict[float, FrictionInterface]
     sticking: list[StickRow] = field(default_factory=list)
     holders: list[HolderRow] = field(default_factory=list)
+    tangential: list[TangentialRow] = field(default_factory=list)
 
 
 @dataclass(frozen=True)
@@ -198,6 +210,7 @@ class Result:
         if friction is not None:
             at_points.append(friction.last)
             rows += [friction.rows, friction.cycles, friction.sticking, friction.holders]
+            rows.append(friction.tangential)
         if self.track is not None:
             at_points.append(self.track.last)
         of_contacts = {

@@ -142,7 +142,9 @@ class StickRow:
     time: float = as_in(HistoryRow)
     contact: int = as_in(ContactRow)
     friction_force: float = column(
-        "friction force", "N", meaning="on the first body, along +x, or +y if pressed along x"
+        "friction force",
+        "N",
+        meaning="on the first body, along +x, or +y if pressed along x; in space its magnitude",
     )
     stick_area: float = as_in(LoadRow)
     dissipated: float = as_in(CycleRow)
@@ -171,3 +173,28 @@ class HolderRow:
     tangential_displacement: float = column("tangential displacement", "m", "µm")
     moment: float = column("moment", "N m", meaning="of the holder about its pivot")
     rotation: float = column("rotation", "rad")
+
+
+@table(
+    "tangential",
+    "Tangential loads, one row per holder and increment",
+    "fretting in space: one row per increment and holder with forces and displacements along x and "
+    "y, torque and twist",
+    grows=True,
+)
+class TangentialRow:
+    """Forces of a holder on its bodies in space across its load direction, and its motion.
+
+    Displacements are those of its pivot; torque and twist are about the axis through the pivot
+    against the load direction, by the right-hand rule. Holders are numbered in the order of the
+    case.
+    """
+
+    time: float = as_in(HistoryRow)
+    holder: int = as_in(HolderRow)
+    force_x: float = column("tangential force along x", "N")
+    force_y: float = column("tangential force along y", "N")
+    displacement_x: float = column("displacement along x", "m", "µm")
+    displacement_y: float = column("displacement along y", "m", "µm")
+    torque: float = column("torque", "N m", "N m")
+    twist: float = column("twist", "rad", "mrad")

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from .quantity import Quantity, from_key, table_of
-from .rows import CycleRow, HeatRow, HistoryRow, LoadRow
+from .rows import CycleRow, HeatRow, HistoryRow, LoadRow, TangentialRow
 
-_history, _heat, _loads, _cycles = (
-    table_of(kind).columns for kind in (HistoryRow, HeatRow, LoadRow, CycleRow)
+_history, _heat, _loads, _cycles, _tangential = (
+    table_of(kind).columns for kind in (HistoryRow, HeatRow, LoadRow, CycleRow, TangentialRow)
 )
 OTHER = "Other"
 
@@ -24,11 +24,15 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
         from_key("guide_moment_x_Nm", "guide moment about x"),
         from_key("guide_moment_y_Nm", "guide moment about y"),
         _loads["tangential_force"],
+        from_key("tangential_force_y_N", "tangential force along y"),
+        _tangential["torque"],
         _history["approach"],
         from_key("holder_rotation_rad", "rotation of the holder"),
         from_key("holder_rotation_x_rad", "rotation of the holder about x"),
         from_key("holder_rotation_y_rad", "rotation of the holder about y"),
         _loads["tangential_displacement"],
+        from_key("tangential_displacement_y_m", "tangential displacement along y"),
+        _tangential["twist"],
         from_key("equilibrium_relative_error", "equilibrium error"),
         from_key("force_balance_relative_error", "force balance error"),
         from_key("moment_balance_relative_error", "moment balance error"),
@@ -140,6 +144,7 @@ def group_of(key: str) -> str:
 
 PHASES = {
     "import": "import of libraries",
+    "mesh search": "search for the mesh",
     "pair": "pairing of the contact faces",
     "assemble elasticity": "assembly of elasticity",
     "condense elasticity": "condensation of elasticity",

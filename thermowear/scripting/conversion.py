@@ -27,6 +27,10 @@ _LOADS = {
     "tangential_force": units.SignedForce,
     "tangential_displacement": units.Displacement,
     "moment": units.SignedMoment,
+    "tangential_force_y": units.SignedForce,
+    "tangential_displacement_y": units.Displacement,
+    "torque": units.SignedMoment,
+    "twist": units.Twist,
 }
 
 
@@ -149,9 +153,16 @@ def LoadHistory(
     repeat: bool = False,
     cycle_start: Any = None,
     moment: Sequence[Any] | None = None,
+    tangential_force_y: Sequence[Any] | None = None,
+    tangential_displacement_y: Sequence[Any] | None = None,
+    torque: Sequence[Any] | None = None,
+    twist: Sequence[Any] | None = None,
 ) -> time_course.LoadHistory:
     """Loads of a holder at instants, see `laws.time_course.LoadHistory`."""
-    loads = force, approach, tangential_force, tangential_displacement, moment
+    loads = (
+        *(force, approach, tangential_force, tangential_displacement, moment),
+        *(tangential_force_y, tangential_displacement_y, torque, twist),
+    )
     instants, read = _instants(time, "LoadHistory"), {}
     for (key, kind), values in zip(_LOADS.items(), loads, strict=True):
         if values is not None:

@@ -40,6 +40,8 @@ class AssemblyGeometry(Section):
         Fraction of the circumference covered by the bodies of an axisymmetric model.
     rings : tuple of str
         Bodies whose whole ring passes through that sector.
+    sized : bool
+        True if the mesh has the sizes ``mesh.size`` and ``mesh.contact_size``.
     mesh_files : str or None
         Paths of the mesh files, for messages; None if the mesh is made by the program.
     """
@@ -53,6 +55,7 @@ class AssemblyGeometry(Section):
     sector: ClassVar[float] = 1.0
     rings: ClassVar[tuple[str, ...]] = ()
     from_file: ClassVar[bool] = False
+    sized: ClassVar[bool] = False
     mesh_files: ClassVar[str | None] = None
 
     type: str
@@ -109,6 +112,10 @@ class AssemblyGeometry(Section):
 
     def with_cell_sets(self, sets: dict[str, dict[str, str]]) -> AssemblyGeometry:
         """Geometry with zones for the cell sets of bodies, given with the paths of their tables."""
+        return self
+
+    def with_sliding(self, faces: tuple[tuple[str, str], ...]) -> AssemblyGeometry:
+        """Geometry that knows the faces of the contacts that slide, for the mesh there."""
         return self
 
     @abstractmethod

@@ -25,6 +25,9 @@ from .tables import (
     SurfaceLoadTable,
 )
 
+_THERMAL = ("conductance", "gap_conductance", "partition")
+"""Keys of ``heat`` that contacts share."""
+
 
 class AssemblyCase(Section):
     """Complete case of several bodies.
@@ -68,6 +71,8 @@ class AssemblyCase(Section):
         given = self.contacts or {name: AssemblyContactTable() for name in self.geometry.contacts}
         found = {name: self._complete(name, table) for name, table in given.items()}
         object.__setattr__(self, "contacts", found)
+        sliding = tuple(t.between for t in found.values() if t.between and not t.tie)
+        object.__setattr__(self, "geometry", self.geometry.with_sliding(sliding))
         return self
 
     def _complete(self, name: str, table: AssemblyContactTable) -> AssemblyContactTable:
@@ -75,8 +80,8 @@ class AssemblyCase(Section):
         if not table.tie:
             shared = {key: getattr(self.contact, key) for key in _set(self.contact)}
         if self.heat is not None and not table.tie:
-            thermal = _set(self.heat) & {"conductance", "gap_conductance", "partition"}
-            shared |= {key: getattr(self.heat, key) for key in thermal}
+            thermal = {key: getattr(self.heat, key) for key in _THERMAL}
+            shared |= {key: value for key, value in thermal.items() if value is not None}
         own = {key: getattr(table, key) for key in _set(table)}
         between = {"between": table.between or self.geometry.contacts.get(name)}
         return AssemblyContactTable.model_construct(**(shared | own | between))

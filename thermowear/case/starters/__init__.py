@@ -36,5 +36,6 @@ def starter_files(name: str) -> dict[str, bytes]:
     CaseError
         If no starter case has this name.
     """
-    path = tomllib.loads(starter_text(name))["geometry"].get("path")
-    return {} if path is None else {path: (resources.files(__name__) / path).read_bytes()}
+    geometry = tomllib.loads(starter_text(name))["geometry"]
+    paths = [geometry["path"]] if "path" in geometry else geometry.get("paths", {}).values()
+    return {path: (resources.files(__name__) / path).read_bytes() for path in paths}

@@ -78,12 +78,10 @@ class Geometry(Section):
         True if body 1 may slide across its axis or section, as a ball on a flat does.
     from_file : bool
         True if the mesh was made elsewhere and therefore has to be checked like the case.
-    symmetry : tuple of str
-        Surfaces on a plane of symmetry x = const.
-    rollers : tuple of str
-        Surfaces that cannot move along y, but freely along x.
-    mid_plane : tuple of str
-        Surfaces in space on planes z = const that cannot move along z, but freely in the plane.
+    sized : bool
+        True if the mesh has the sizes ``mesh.size`` and ``mesh.contact_size``.
+    symmetry, rollers, mid_plane : tuple of str
+        Surfaces that cannot move along x, y or z, but freely in their planes.
     press_direction : tuple of float
         Unit vector of the load direction of body 1, towards body 2.
     pivot_point : tuple of float or None
@@ -126,6 +124,7 @@ class Geometry(Section):
     unmeshed: ClassVar[tuple[str, ...]] = ("thickness", "length_unit")
     slides_across: ClassVar[bool] = False
     from_file: ClassVar[bool] = False
+    sized: ClassVar[bool] = False
     symmetry: ClassVar[tuple[str, ...]] = ()
     rollers: ClassVar[tuple[str, ...]] = ()
     mid_plane: ClassVar[tuple[str, ...]] = ()

@@ -5,13 +5,15 @@ All values are in SI after reading; `units` defines the unit of each key.
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
 from ...errors import CaseError
 from ...laws.time_course import LoadHistories
+from ..values.percentages import Percentage
 from ..values.section import Number, Section
+from ..values.units import Length
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
 from .contact import ContactTable, InterfaceTable
@@ -24,15 +26,18 @@ from .wear import WearTable
 _MOST_NODES = 2_000_000
 """Largest number of displacement nodes: larger matrices exceed the memory of a workstation."""
 
-Elements = Annotated[int, Field(ge=1, le=2000, strict=True)]
+MOST_ELEMENTS = 2000
+Elements = Annotated[int, Field(ge=1, le=MOST_ELEMENTS, strict=True)]
 Grading = Annotated[Number, Field(ge=0.05, le=1.0)]
 
 
 class FaceMesh(Section):
-    """Mesh of the contact face of one body where it differs from the default."""
+    """Mesh of one body where it differs from the default."""
 
     elements: Elements | None = None
     grading: Grading | None = None
+    size: Length | None = None
+    contact_size: Length | None = None
 
 
 class MeshTable(Section):
@@ -45,23 +50,41 @@ class MeshTable(Section):
     elements : int
         Number of elements along the contact.
     grading : float
-        Size ratio of neighbouring elements towards the contact edges.
+        Size ratio of neighbouring elements towards the contact edges; of bodies from CAD: size of
+        the elements at the contact edges relative to those inside.
+    size : float or None
+        Largest element size of bodies from CAD; None: a small part of the size of each body [m].
+    contact_size : float or None
+        Element size on contact faces of bodies from CAD; None: half of the largest one [m].
     solver : str
         Linear solver of bodies in space: ``auto`` (by size), ``direct`` or ``multigrid``.
     bodies : dict of str to FaceMesh
         Deviations for single bodies: the meshes of the faces need not match.
+    accuracy : float or None
+        Largest relative error of pressure, shape and temperature; those of `degree`, `elements`
+        and `grading` that are not given are chosen for it.
     """
+
+    CHOSEN: ClassVar = {"degree", "elements", "grading"}
 
     degree: Annotated[int, Field(ge=1, le=10, strict=True)] = 8
     elements: Elements = 12
     grading: Grading = 0.3
+    size: Length | None = None
+    contact_size: Length | None = None
     solver: Literal["auto", "direct", "multigrid"] = "auto"
     bodies: dict[str, FaceMesh] = {}
+    accuracy: Percentage | None = None
 
     def face(self, body: str) -> tuple[int, float]:
         """Number of elements along the contact, and grading, of one body."""
         own = self.bodies.get(body, FaceMesh())
         return own.elements or self.elements, own.grading or self.grading
+
+    def sizes(self, body: str) -> tuple[float | None, float | None]:
+        """Largest element size of one body, and that on its contact faces [m]."""
+        own = self.bodies.get(body, FaceMesh())
+        return own.size or self.size, own.contact_size or self.contact_size
 
 
 def check_size(mesh, degree: int) -> None:
@@ -241,5 +264,13 @@ class Case(Section):
 
 
 def as_plain(case: Section) -> dict[str, Any]:
-    """Case as nested tables of text and numbers, including defaults."""
-    return case.model_dump(exclude_none=True)
+    """Case as nested tables of text and numbers, including defaults.
+
+    Keys of the mesh that an accuracy stands for are left out.
+    """
+    tables = case.model_dump(exclude_none=True)
+    mesh = getattr(case, "mesh", None)
+    if mesh is not None and mesh.accuracy is not None:
+        chosen = MeshTable.CHOSEN - mesh.model_fields_set
+        tables["mesh"] = {key: v for key, v in tables["mesh"].items() if key not in chosen}
+    return tables

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar, Generic, TypeVar
 from pydantic import Field, TypeAdapter, ValidationError, ValidationInfo, model_validator
 
 from ...laws.coefficients import Multipliers, Table1D
-from ...laws.time_course import LoadHistory, TimeFunction
+from ...laws.time_course import TANGENTIAL, LoadHistory, TimeFunction
 from ..values import units
 from ..values.csv_columns import Columns, read_columns
 from ..values.section import KeyFault, Number, Section, Switch, UserFile
@@ -222,14 +222,22 @@ class History(TimeHistory):
         "tangential_force": "N",
         "tangential_displacement": "um",
         "moment": "N m",
+        "tangential_force_y": "N",
+        "tangential_displacement_y": "um",
+        "torque": "N m",
+        "twist": "mrad",
     }
-    ALTERNATIVES = ("force", "approach"), ("tangential_force", "tangential_displacement")
+    ALTERNATIVES = ("force", "approach"), *TANGENTIAL
 
     force: tuple[units.LeastForce, ...] | None = None
     approach: tuple[units.Length, ...] | None = None
     tangential_force: tuple[units.SignedForce, ...] | None = None
     tangential_displacement: tuple[units.Displacement, ...] | None = None
     moment: tuple[units.SignedMoment, ...] | None = None
+    tangential_force_y: tuple[units.SignedForce, ...] | None = None
+    tangential_displacement_y: tuple[units.Displacement, ...] | None = None
+    torque: tuple[units.SignedMoment, ...] | None = None
+    twist: tuple[units.Twist, ...] | None = None
     cycle_start: units.Instant | None = None
 
     @model_validator(mode="after")

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 from typing import Any
 
+from ...laws.time_course import TANGENTIAL, LoadHistory
 from ..any_case import AnyCase
 from ..tables.analyses import Fretting, Reciprocating, Transient
 from ..tables.schema import Case
@@ -170,7 +172,7 @@ def histories(case: Case) -> Iterator[Fault]:
 
 def _force_history(case: Case, history: History) -> Iterator[Fault]:
     """Only the force may vary in a transient analysis, without other normal loads."""
-    others = ("approach", "tangential_force", "tangential_displacement")
+    others = ("approach", *chain.from_iterable(TANGENTIAL))
     refused = [key for key in others if getattr(history, key) is not None]
     for key in refused:
         yield (
@@ -213,10 +215,27 @@ def fretting(case: Case) -> Iterator[Fault]:
         yield "load.history", "missing; required in a fretting analysis"
     elif history.tangential and case.model == "axisymmetric":
         yield "load.history", "tangential loads are not supported in axisymmetric models"
-    elif history.tangential and case.geometry.symmetry:
+    elif history.tangential and case.geometry.symmetry and case.model != "3d":
         yield "geometry.half", "tangential loads are not symmetric; mesh the whole section"
     else:
         yield from cycles_of_loads(case, analysis, "load.history")
+    if history is not None and case.model == "3d":
+        planes = bool(case.geometry.symmetry), bool(case.geometry.rollers)
+        for key, text in not_symmetric(history, *planes):
+            yield f"load.history.{key}", text
+    elif history is not None:
+        for key in history.in_space:
+            yield f"load.history.{key}", "requires a 3d model"
+
+
+def not_symmetric(history: LoadHistory, x: bool, y: bool) -> Iterator[Fault]:
+    """Tangential loads in space that planes of symmetry x or y = const do not permit, by key."""
+    for number, pair in enumerate(TANGENTIAL):
+        for plane, cut, refused in (("x", x, (0, 2)), ("y", y, (1, 2))):
+            if cut and number in refused:
+                for key in pair:
+                    if getattr(history, key) is not None:
+                        yield key, f"is not symmetric about the plane {plane} = const of the model"
 
 
 def cycles_of_loads(case: AnyCase, analysis: Fretting, path: str) -> Iterator[Fault]:

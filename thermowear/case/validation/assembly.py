@@ -17,6 +17,7 @@ from .analyses import varying
 from .assembly_histories import histories
 from .conditions import heat_in_time, heated_surfaces
 from .layer_wear import layer_wear
+from .mesh_sizes import mesh_sizes
 from .part_wear import note_default_per, part_wear
 
 
@@ -143,6 +144,7 @@ _CHECKS = (
     _pressure_degrees,
     _carried,
     _heat,
+    mesh_sizes,
     cyclic_assembly.unsupported,
     cyclic_assembly.fretting,
     cyclic_assembly.reciprocating,

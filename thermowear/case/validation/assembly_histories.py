@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 
+from ...laws.time_course import TANGENTIAL
 from ..assembly.schema import AssemblyCase
 from ..assembly.tables import AssemblyHolderTable
 from ..values.section import Fault
 
-_NOT_FORCE = (
-    *("approach", "tangential_force", "tangential_displacement"),
-    *("moment", "cycle_start"),
-)
+_NOT_FORCE = ("approach", *chain.from_iterable(TANGENTIAL), "moment", "cycle_start")
 _UNVARIED = ("moments", "tangential_force", "closing_moment")
 
 

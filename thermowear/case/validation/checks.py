@@ -13,6 +13,7 @@ from ..tables.schema import Case
 from ..values.section import Fault
 from . import analyses, conditions, materials
 from .layer_wear import layer_wear
+from .mesh_sizes import mesh_sizes
 from .part_wear import note_default_per, part_wear
 
 _SLIDING = ("steady", "transient", "reciprocating")
@@ -157,8 +158,8 @@ def _in_space(case: Case) -> Iterator[Fault]:
         yield "contact.transverse_friction", "not supported in 3d models"
     elif case.contact.pressure_degree == "lobatto":
         yield "contact.pressure_degree", "not supported in 3d models"
-    if case.analysis.cyclic:
-        yield "analysis.type", f"{case.analysis.type!r} is not supported in 3d models"
+    if case.analysis.type == "reciprocating":
+        yield "analysis.type", "'reciprocating' is not supported in 3d models"
 
 
 def _moving_mesh(case: Case) -> Iterator[Fault]:
@@ -195,6 +196,7 @@ def _symmetry(case: Case) -> Iterator[Fault]:
 _CHECKS = (
     _names,
     _model,
+    mesh_sizes,
     materials.cell_sets,
     materials.like_alone,
     materials.materials,

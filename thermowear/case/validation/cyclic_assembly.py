@@ -8,7 +8,7 @@ from ..assembly.schema import AssemblyCase
 from ..assembly.tables import AssemblyHolderTable
 from ..tables.analyses import Fretting, Reciprocating
 from ..values.section import Fault
-from .analyses import cycles, cycles_of_loads
+from .analyses import cycles, cycles_of_loads, not_symmetric
 
 _CONFLICTS = {
     "force": ("force", "approach"),
@@ -25,8 +25,8 @@ def unsupported(case: AssemblyCase) -> Iterator[Fault]:
     if not case.analysis.cyclic:
         return
     refused = f"is not supported in a {case.analysis.type} analysis"
-    if case.model == "3d":
-        yield "analysis.type", f"{case.analysis.type!r} is not supported in 3d models"
+    if case.model == "3d" and isinstance(case.analysis, Reciprocating):
+        yield "analysis.type", "'reciprocating' is not supported in 3d models"
     if case.load.pressure:
         yield "load.pressure", refused
     for path, contact in case.contact_tables.items():
@@ -78,11 +78,18 @@ def _history(case: AssemblyCase, holder: AssemblyHolderTable) -> Iterator[Fault]
             yield f"history.{key}", f"needs the motion {motion!r} in free"
     if not history.loads.tangential:
         return
-    bodies = {case.geometry.body_of(surface) for surface in holder.surface}
+    bodies = [case.bodies[case.geometry.body_of(surface)] for surface in holder.surface]
+    x, y = (any(getattr(body, key) for body in bodies) for key in ("symmetry", "rollers"))
     if case.model == "axisymmetric":
         yield "history", "tangential loads are not supported in axisymmetric models"
-    elif any(case.bodies[body].symmetry for body in bodies):
+    elif case.model == "3d":
+        for key, text in not_symmetric(history.loads, x, y):
+            yield f"history.{key}", text
+    elif x:
         yield "history", "tangential loads are not symmetric about a plane x = const"
+    if case.model != "3d":
+        for key in history.loads.in_space:
+            yield f"history.{key}", "requires a 3d model"
 
 
 def reciprocating(case: AssemblyCase) -> Iterator[Fault]:

@@ -113,26 +113,92 @@ def residual(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:
 
 def jacobian(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:
     """Generalised (semismooth) derivative of `residual`, shape (M + k, M + k)."""
-    m, total, k = len(problem.friction), len(problem.offset), len(problem.force)
-    trial = np.zeros((total, total + k))  # derivative of x - c y
-    trial[:, :total] = np.eye(total) - problem.stiffness[:, None] * problem.compliance
-    trial[:, total:] = problem.stiffness[:, None] * problem.modes
-    normal, tangential = trial[:m], trial[m:].reshape(-1, m, total + k)
-    direction, carried, turned = _tangential_slopes(problem, unknowns)
+    every = np.ones(len(problem.friction), dtype=bool)
+    return _linearised(problem, unknowns, every, problem.compliance)[0]
+
+
+def newton_step(
+    problem: CoulombProblem, unknowns: np.ndarray, error: np.ndarray
+) -> np.ndarray | None:
+    """Step of Newton's method from the unknowns with a residual, shape (M + k,); None if singular.
+
+    Open coefficients become zero. They are eliminated, so that the system of equations is that of
+    the closed ones.
+    """
+    m, total = len(problem.friction), len(problem.offset)
     closed = problem.trial(unknowns)[0] > 0
-    result = np.zeros((total + k, total + k))
-    result[:total, :total] = np.eye(total)
-    result[:m] -= closed[:, None] * normal
-    shear = (problem.friction * carried)[:, None, None] * direction[..., None] * normal[:, None]
-    shear = shear + np.einsum("mij,jmu->miu", turned, tangential)
-    result[m:total] -= shear.transpose(1, 0, 2).reshape(total - m, total + k)
-    result[total:, :total] = problem.modes.T / _areas(problem)[:, None]
-    return result
+    inside = np.tile(closed, total // m)
+    kept, gone = np.flatnonzero(inside), np.flatnonzero(~inside & (error[:total] != 0.0))
+    change = problem.compliance[np.ix_(kept, gone)] @ -error[gone]
+    own = problem.compliance[np.ix_(kept, kept)]
+    matrix, moved = _linearised(problem, unknowns, closed, own, change)
+    right = -error[np.append(inside, np.ones(len(problem.force), dtype=bool))] + moved
+    right[len(kept) :] += problem.modes[gone].T @ error[gone] / _areas(problem)
+    try:
+        found = np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        return None
+    step = np.zeros(len(unknowns))
+    step[gone], step[kept], step[total:] = -error[gone], found[: len(kept)], found[len(kept) :]
+    return step
 
 
-def _tangential_slopes(problem: CoulombProblem, unknowns: np.ndarray):
-    """Direction of the projected shear, slip mask, and derivative by the trial shear."""
-    tangential = problem.trial(unknowns)[1]
+def _linearised(
+    problem: CoulombProblem,
+    unknowns: np.ndarray,
+    chosen: np.ndarray,
+    compliance: np.ndarray,
+    change: np.ndarray | None = None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Derivative of the residual of chosen coefficients by them and by the motions.
+
+    Parameters
+    ----------
+    problem : CoulombProblem
+    unknowns : ndarray, shape (M + k,)
+    chosen : ndarray of bool, shape (m,)
+    compliance : ndarray, shape (u, u)
+        Rows and columns of A of the chosen coefficients.
+    change : ndarray, shape (u,), optional
+        Change of their y by those that are not chosen.
+
+    Returns
+    -------
+    matrix : ndarray, shape (u + k, u + k)
+    moved : ndarray, shape (u + k,)
+        Change of their projections by that of y.
+    """
+    m, k, u = int(chosen.sum()), len(problem.force), len(compliance)
+    inside = np.tile(chosen, len(problem.offset) // len(chosen))
+    c, modes = problem.stiffness[inside][:, None], problem.modes[inside]
+    trial = np.empty((u, u + k + 1))  # derivative of x - c y
+    trial[:, :u] = -c * compliance
+    trial[np.arange(u), np.arange(u)] += 1.0
+    trial[:, u : u + k] = c * modes
+    trial[:, -1] = 0.0 if change is None else -c[:, 0] * change
+    blocks = trial.reshape(len(inside) // len(chosen), m, u + k + 1)
+    normal, tangential = blocks[0], blocks[1:]
+    closed, direction, carried, turned = (
+        each[chosen] for each in _projection_slopes(problem, unknowns)
+    )
+    shear = (problem.friction[chosen] * carried)[:, None, None] * direction[..., None]
+    projected = np.empty_like(trial)
+    projected[:m] = closed[:, None] * normal
+    projected[m:] = (
+        (shear * normal[:, None] + np.einsum("mij,jmu->miu", turned, tangential))
+        .transpose(1, 0, 2)
+        .reshape(u - m, u + k + 1)
+    )
+    result = np.zeros((u + k, u + k))
+    result[:u] = -projected[:, :-1]
+    result[np.arange(u), np.arange(u)] += 1.0
+    result[u:, :u] = modes.T / _areas(problem)[:, None]
+    return result, np.append(projected[:, -1], np.zeros(k))
+
+
+def _projection_slopes(problem: CoulombProblem, unknowns: np.ndarray):
+    """Closed mask, direction of the shear, slip mask, and derivative by the trial shear."""
+    normal, tangential = problem.trial(unknowns)
     pressure, _, sticking = problem.projection(unknowns)
     length = np.linalg.norm(tangential, axis=1)
     direction = tangential / np.where(length > 0, length, 1.0)[:, None]
@@ -140,7 +206,8 @@ def _tangential_slopes(problem: CoulombProblem, unknowns: np.ndarray):
     identity = np.eye(tangential.shape[1])
     across = identity - direction[:, :, None] * direction[:, None, :]
     turn = slipping * problem.friction * pressure / np.where(length > 0, length, 1.0)
-    return direction, slipping, sticking[:, None, None] * identity + turn[:, None, None] * across
+    turned = sticking[:, None, None] * identity + turn[:, None, None] * across
+    return normal > 0, direction, slipping, turned
 
 
 def scales(problem: CoulombProblem, unknowns: np.ndarray) -> np.ndarray:

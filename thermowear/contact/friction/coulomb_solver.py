@@ -1,4 +1,4 @@
-"""Semismooth Newton method for frictional contact with fallback starts, and gross slip."""
+"""Semismooth Newton method for frictional contact with fallback starts."""
 
 from __future__ import annotations
 
@@ -8,17 +8,13 @@ import numpy as np
 
 from ...errors import ComputationError
 from ..solvers.lemke import lemke
-from ..solvers.signorini import saddle_point, solve_contact
-from .coulomb import CoulombProblem, CoulombSolution, jacobian, residual, scales, violated
+from ..solvers.signorini import saddle_point
+from .coulomb import CoulombProblem, CoulombSolution, newton_step, residual, scales, violated
 
 _MAX_ITERATIONS = 30
 _TOLERANCE = 1e-12
 _SPRING_RATIOS = (1e-3, 1e-2, 1e-1, 1.0)  # relative to the contact stiffness, tried in turn
 _MAX_SPRING_UPDATES = 20
-
-
-class FullSliding(ComputationError):
-    """Error for a tangential force that exceeds the friction limit."""
 
 
 def solve_by_newton(
@@ -73,6 +69,7 @@ def _verified_from(
     return None
 
 
+@np.errstate(over="ignore", invalid="ignore")  # iterates that diverge
 def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> CoulombSolution | None:
     for iteration in range(_MAX_ITERATIONS + 1):
         error = residual(problem, unknowns)
@@ -81,9 +78,8 @@ def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> Coul
             pressure, shear, sticking = problem.projection(unknowns)
             motion = unknowns[len(problem.offset) :]
             return CoulombSolution(pressure, shear, motion, sticking, iteration)
-        try:
-            step = np.linalg.solve(jacobian(problem, unknowns), -error)
-        except np.linalg.LinAlgError:
+        step = newton_step(problem, unknowns, error)
+        if step is None:
             return None
         if damped:
             step = _damped(problem, unknowns, step, float(np.linalg.norm(error)))
@@ -187,47 +183,3 @@ def _by_lemke(problem: CoulombProblem) -> np.ndarray | None:
     x = spread @ solution[: 3 * m] * size
     forward, back = solution[4 * m :].reshape(2, k)
     return scale * np.concatenate([x, np.linalg.solve(mixing, forward - back)])
-
-
-def check_gross_slip(problem: CoulombProblem, presses: np.ndarray, mode: int, holder: str) -> None:
-    """Raise if the contacts carry less than a tangential force when they slip along its motion.
-
-    In gross slip the shear is a multiple of the pressure, which then solves a Signorini problem.
-    Contacts that the motion does not slide are taken as frictionless.
-
-    Parameters
-    ----------
-    problem : CoulombProblem
-    presses : ndarray of bool, shape (k,)
-        True for the motions along load directions, which are free in gross slip.
-    mode : int
-        Motion along the tangential force.
-    holder : str
-        Subject of the message.
-
-    Raises
-    ------
-    FullSliding, ComputationError
-    """
-    m = len(problem.friction)
-    asked = problem.force[mode]
-    across = problem.modes[m : 2 * m, mode] * np.sign(asked)
-    drag = problem.friction * np.sign(across)  # τ = drag λ opposes the force
-    compliance = problem.compliance[:m, :m] + problem.compliance[:m, m : 2 * m] * drag
-    modes = problem.modes[:m, presses]
-    carrying = modes + drag[:, None] * problem.modes[m : 2 * m, presses]
-    sliding = solve_contact(
-        compliance, problem.offset[:m], modes, problem.force[presses], force_modes=carrying
-    )
-    λ = sliding.coefficients
-    if not np.any(λ > 0):
-        raise ComputationError(
-            "contact: the bodies do not touch, so that nothing balances a tangential force; give a "
-            "tangential displacement, or press"
-        )
-    most = problem.modes[:m, mode] @ λ + problem.modes[m : 2 * m, mode] @ (drag * λ)
-    if abs(asked) >= (1 - 1e-9) * abs(most):
-        raise FullSliding(
-            f"{holder} slides; friction carries {abs(most):.6g} N, and the tangential force "
-            f"is {abs(asked):.6g} N. Give a smaller force, or a tangential displacement"
-        )

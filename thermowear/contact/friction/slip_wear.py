@@ -11,8 +11,8 @@ volume is exactly ``κ/mu`` times the dissipated energy.
 
 Coefficients refer to the common face, with the share of each body (see `common_face`). The worn
 profiles slide along it: at a slip s, ``W1(x - s_2 s)`` and ``W2(x + s_1 s)`` lie at x. Profiles are
-interpolated linearly between the functions by a matrix L; worn depth is transferred back to ω by
-its adjoint, which conserves volume.
+interpolated linearly between the functions by a matrix L (in space: see `worn_surface`); worn depth
+is transferred back to ω by its adjoint, which conserves volume.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -30,6 +31,7 @@ from ..search.contacts import Contacts
 from ..search.pairing import Pairing
 from ..wear.track import hat_functions
 from .stick_slip_state import StickSlipState
+from .worn_surface import worn_surface
 
 
 @dataclass(frozen=True)
@@ -62,20 +64,30 @@ class WornProfile:
         return self.interpolation(slip).T * self.areas / self.areas[:, None]
 
 
+class SlidingProfile(Protocol):
+    """Worn profile of a body at one interface, `WornProfile` or `worn_surface.WornSurface`."""
+
+    def interpolation(self, slip: Any) -> np.ndarray:
+        """Matrix L: coefficients at the contact from those of the profile at a slip, (m, m)."""
+
+    def wear_transfer(self, slip: Any) -> np.ndarray:
+        """Coefficients of the profile from the depths worn at the contact, shape (m, m)."""
+
+
 @dataclass(frozen=True)
 class WornProfiles:
     """Worn profiles of the first, or of the second bodies of all interfaces.
 
     Attributes
     ----------
-    each : tuple of WornProfile
+    each : tuple of SlidingProfile
         Profile at each interface.
     """
 
-    each: tuple[WornProfile, ...]
+    each: tuple[SlidingProfile, ...]
 
     def interpolation(self, travel: np.ndarray) -> np.ndarray:
-        """Matrix L for the slips of the interfaces (n_interfaces,), shape (m, m)."""
+        """Matrix L for the slips of the interfaces, see `FrictionalContact.travel`, (m, m)."""
         pairs = zip(self.each, travel, strict=True)
         return block_diag(*(profile.interpolation(slip) for profile, slip in pairs))
 
@@ -91,21 +103,27 @@ def worn_profiles(contacts: Contacts, weighted: np.ndarray, side: int) -> WornPr
     Parameters
     ----------
     contacts : Contacts
-        Contact points of a plane or axisymmetric model.
-    weighted : ndarray, shape (n, m)
+    weighted : ndarray or csr_array, shape (n, m)
         ``diag(w) Ψ``.
     side : int
     """
+    build = worn_surface if contacts.in_space else _profile
     ranges = zip(contacts, function_ranges(contacts, weighted), strict=True)
-    each = (_profile(pairing, weighted[own, chosen], side) for (pairing, own), chosen in ranges)
+    each = (
+        build(pairing, weighted[own, chosen], _shift_per_slip(pairing, side))
+        for (pairing, own), chosen in ranges
+    )
     return WornProfiles(tuple(each))
 
 
-def _profile(pairing: Pairing, weighted: np.ndarray, side: int) -> WornProfile:
-    """Worn profile at one interface."""
-    areas = weighted.sum(axis=0)
+def _shift_per_slip(pairing: Pairing, side: int) -> float:
     share = float(pairing.weights @ pairing.share / pairing.weights.sum())
-    shift_per_slip = 1.0 - share if side == 0 else -share
+    return 1.0 - share if side == 0 else -share
+
+
+def _profile(pairing: Pairing, weighted: np.ndarray, shift_per_slip: float) -> WornProfile:
+    """Worn profile at one interface in a plane."""
+    areas = weighted.sum(axis=0)
     return WornProfile((pairing.position @ weighted) / areas, areas, shift_per_slip)
 
 
@@ -183,7 +201,7 @@ class IncrementWear:
         State at the start of the increment.
     areas : ndarray, shape (m,)
         Areas of the basis functions [m²].
-    travel : ndarray, shape (n_interfaces,)
+    travel : ndarray, shape (n_interfaces,), in space (n_interfaces, 3)
         Displacement of the first bodies along the faces at the end of the increment, see
         `FrictionalContact` [m].
     """

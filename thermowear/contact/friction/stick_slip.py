@@ -13,11 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import ComputationError
-from ..operators.tangential import FrictionalContact
+from ..operators.frictional_contact import FrictionalContact
 from ..solvers.signorini import solve_contact
 from ..wear.implicit_step import newton_with_wear
 from .coulomb import CoulombProblem, CoulombSolution
-from .coulomb_solver import FullSliding, check_gross_slip, solve_by_newton, solve_with_fallbacks
+from .coulomb_solver import solve_by_newton, solve_with_fallbacks
+from .gross_slip import FullSliding, check_gross_slip
 from .slip_wear import IncrementWear, SlipWear
 from .stick_slip_state import Loads, Status, StickSlipState, unloaded
 
@@ -102,10 +103,11 @@ def _increment(contact, friction, state, guess, loads: Loads, compliance, gap) -
     if guess is not state:
         near = np.append(contact.stack(guess.pressure, guess.shear), guess.motion[free])
     solution = solve_by_newton(problem, closed, near)
-    if solution is None:
-        holders = [held.holder for held, is_free in zip(contact.held, free, strict=True) if is_free]
-        for mode in np.flatnonzero(slides):
-            check_gross_slip(problem, presses, mode, holders[mode])
+    if solution is None or (slides.any() and not friction.any()):
+        held = [each for each, is_free in zip(contact.held, free, strict=True) if is_free]
+        for holder in dict.fromkeys(held[k].holder for k in np.flatnonzero(slides)):
+            own = [k for k in np.flatnonzero(slides) if held[k].holder == holder]
+            check_gross_slip(problem, presses, np.array(own), [held[k] for k in own])
         solution = solve_with_fallbacks(problem, closed)
     return _state_after(contact, state, solution, free, fixed)
 
@@ -115,10 +117,8 @@ def _state_after(contact, state, solution: CoulombSolution, free, fixed) -> Stic
     x = contact.stack(solution.pressure, solution.shear)
     motion = fixed.copy()
     motion[free] = solution.motion
-    slip = contact.split(contact.compliance @ x - contact.modes @ motion)[1]
-    point_slip = contact.point_slip(x, motion)
-    traction = contact.basis @ solution.shear
-    lost = -(traction * (point_slip - state.point_slip)).sum(axis=1)
+    slip, point_slip = contact.weak_slip(x, motion), contact.point_slip(x, motion)
+    lost = contact.lost(solution.shear, slip - state.slip, point_slip - state.point_slip)
     closed = np.where(solution.sticking, Status.STICK, Status.SLIP)
     return replace(
         state,

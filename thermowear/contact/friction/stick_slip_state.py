@@ -8,7 +8,7 @@ from enum import IntEnum
 import numpy as np
 
 from ...serialise import serialisable
-from ..operators.tangential import FrictionalContact
+from ..operators.frictional_contact import FrictionalContact
 
 
 class Status(IntEnum):
@@ -68,7 +68,7 @@ class StickSlipState:
 def unloaded(contact: FrictionalContact, wearing: int = 0) -> StickSlipState:
     """Unloaded initial state, for a number of wearing bodies."""
     (n, m), k = contact.basis.shape, contact.modes.shape[1]
-    t = len(contact.response) - 1
+    t = contact.directions
     still, free = np.zeros(k), np.full(m, Status.OPEN)
     coefficients, points, worn = np.zeros((m, t)), np.zeros((n, t)), np.zeros((wearing, m))
     return StickSlipState(

@@ -10,7 +10,9 @@ is the tangential displacement of body 1 relative to body 2::
 
 so that friction opposes it, ``t ds <= 0``, with the heat ``-t ds``. A holder moves body 1 by
 ``m d``: that changes gap and slip by ``-R d`` with ``R = (m·n, -m·e)``, and the force of the holder
-along m is ``F = Rᵀ w (p, t)``. Both are reversed for a holder of body 2.
+along m is ``F = Rᵀ w (p, t)``. Both are reversed for a holder of body 2. In space there are two
+directions ``e_1`` and ``e_2 = e_1 × n``, see `faces.tangent_frame`; slip and shear have a component
+along each.
 
 Pressure and shear share the basis Ψ. Their coefficients are stacked: ``x = (λ, τ_1, τ_2 …)`` with
 one block per tangential direction, one in the plane. In weak form,
@@ -21,7 +23,6 @@ one block per tangential direction, one in the plane. In weak form,
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import scipy.sparse as sp
@@ -29,116 +30,23 @@ import scipy.sparse as sp
 from ...bulk.mechanics.elasticity import Elasticity
 from ...laws.motions import RigidMotion
 from ...parallel import sum_over_ranks
+from ..faces.tangent_frame import TangentFrame, frame_in_space
 from ..search.contacts import Contacts
 from ..search.pairing import Pairing
-from .pressure import Basis, PressureSpace, dense, scaled
+from .frictional_contact import (
+    FrictionalContact,
+    HeldMotion,
+    SurfaceContact,
+    frictional_contact,
+    weak,
+)
+from .pressure import Basis, dense, scaled
 from .rigid_motion import RigidMode, hold
+from .thermal_opening import elastic_columns
 from .traces import vector_trace
 
 _NOISE = 1e-9
 """Travel per unit of a motion, relative to the motion, below which it is rounding noise."""
-
-
-@dataclass(frozen=True)
-class HeldMotion:
-    """Motion of a holder, free or given.
-
-    Attributes
-    ----------
-    motion : RigidMotion
-    bodies : tuple of int
-        Indices of the bodies that move.
-    role : str
-        ``"press"`` along the load direction, ``"slide"`` across it, ``"other"``.
-    holder : str
-        Subject of messages about it.
-    """
-
-    motion: RigidMotion
-    bodies: tuple[int, ...] = (0,)
-    role: str = "other"
-    holder: str = "contact: body 1"
-
-
-@dataclass(frozen=True)
-class FrictionalContact(PressureSpace):
-    """Gap and slip of the elastic bodies as functions of pressure and shear.
-
-    Below, t tangential directions give ``M = m (1 + t)`` coefficients.
-
-    Attributes
-    ----------
-    gap : ndarray, shape (n,)
-        Gap of the unloaded, unworn bodies [m].
-    response : ndarray, shape (1 + t, n, M)
-        Gap and slips at the points per coefficient [m/Pa].
-    rigid : ndarray, shape (1 + t, n, k)
-        R at the points: decrease of gap and slips per unit of each motion of the holder.
-    compliance : ndarray, shape (M, M)
-        A, symmetric [m⁵/N].
-    modes : ndarray, shape (M, k)
-        Weak R [m²].
-    travel : ndarray, shape (n_interfaces, k)
-        Displacement of the first body over the second one, along increasing positions on the face,
-        per unit of each motion.
-    held : tuple of HeldMotion
-        The k motions.
-    influence : ndarray, shape (n_owned, M)
-        Displacement per coefficient [m/Pa]; weak gap and slips due to any nodal load f are
-        ``influenceᵀ f``.
-    """
-
-    gap: np.ndarray
-    response: np.ndarray
-    rigid: np.ndarray
-    compliance: np.ndarray
-    modes: np.ndarray
-    travel: np.ndarray
-    held: tuple[HeldMotion, ...]
-    influence: np.ndarray
-
-    def with_role(self, role: str) -> np.ndarray:
-        """True for the motions with a role, shape (k,)."""
-        return np.array([motion.role == role for motion in self.held], dtype=bool)
-
-    def stack(self, pressure: np.ndarray, shear: np.ndarray) -> np.ndarray:
-        """Coefficients λ, shape (m,), and τ, shape (m, t), as one vector x."""
-        return np.concatenate([pressure, shear.T.ravel()])
-
-    def split(self, stacked: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Split x into λ and τ, the inverse of `stack`."""
-        blocks = stacked.reshape(-1, self.basis.shape[1])
-        return blocks[0], blocks[1:].T
-
-    def point_slip(self, stacked: np.ndarray, motion: np.ndarray) -> np.ndarray:
-        """Slip at the points under coefficients x and motion d of the holder, shape (n, t) [m]."""
-        return (self.response[1:] @ stacked - self.rigid[1:] @ motion).T
-
-
-def frictional_contact(
-    basis: np.ndarray,
-    weights: np.ndarray,
-    gap: np.ndarray,
-    response: np.ndarray,
-    rigid: np.ndarray,
-    travel: np.ndarray,
-    held: Sequence[HeldMotion],
-    influence: np.ndarray,
-) -> FrictionalContact:
-    """Assemble weak operators from responses at the points; arguments as in `FrictionalContact`.
-
-    Parameters
-    ----------
-    weights : ndarray, shape (n,)
-        Area of each point [m²].
-    """
-    weighted = scaled(weights, basis)
-    compliance = np.concatenate([weighted.T @ component for component in response])
-    modes = weak(weighted, rigid)
-    compliance = (compliance + compliance.T) / 2
-    return FrictionalContact(
-        basis, weighted, gap, response, rigid, compliance, modes, travel, tuple(held), influence
-    )
 
 
 def tangents(normals: np.ndarray) -> np.ndarray:
@@ -162,20 +70,59 @@ def forwards(directions: np.ndarray) -> np.ndarray:
     return np.where(np.where(np.abs(x) > _NOISE, x, y) < 0.0, -1.0, 1.0)
 
 
-def travel(contacts: Contacts, motion: HeldMotion) -> np.ndarray:
-    """Travel of the first body along the face of each interface, shape (n_interfaces,).
+def tangential_frame(
+    contacts: Contacts, poles: np.ndarray | None = None, turned: float = 0.0
+) -> np.ndarray:
+    """Tangential directions e at the points, shape (t, n, gdim).
 
-    Along the mean tangent in the middle of the face, see `FrictionalContact`.
+    Parameters
+    ----------
+    contacts : Contacts
+    poles : ndarray, shape (n_interfaces, 3), optional
+        Directions that the frames in space start from, by default the mean normals.
+    turned : float, optional
+        Angle by which the frames in space are turned [rad].
     """
-    found = np.zeros(len(contacts.each))
+    if not contacts.in_space:
+        return tangents(contacts.normals)
+    given = [None] * len(contacts.each) if poles is None else poles
+    each = zip(contacts.each, given, strict=True)
+    frames = ((p, frame_in_space(p.normals, p.weights, pole, turned)) for p, pole in each)
+    return np.concatenate([frame.at(pairing.normals) for pairing, frame in frames], axis=1)
+
+
+def travel(contacts: Contacts, motion: HeldMotion) -> np.ndarray:
+    """Travel of the first body along the face of each interface, see `FrictionalContact`.
+
+    Shape (n_interfaces,), in space (n_interfaces, 3).
+    """
+    measure = _travel_in_space if contacts.in_space else _travel_in_plane
+    found = np.zeros((len(contacts.each), *((3,) if contacts.in_space else ())))
     for body in motion.bodies:
         for index, pair in enumerate(contacts.bodies):
             if body in pair:
-                middle, along = _middle(contacts.each[index])
-                moved = float(motion.motion.at(middle) @ along)
+                moved = measure(contacts.each[index], motion.motion)
                 found[index] += moved if pair.index(body) == 0 else -moved
     found[np.abs(found) < _NOISE * np.abs(found).max(initial=1.0)] = 0.0
     return found
+
+
+def _travel_in_plane(pairing: Pairing, motion: RigidMotion) -> float:
+    """Displacement along the mean tangent in the middle of the face."""
+    middle, along = _middle(pairing)
+    return float(motion.at(middle) @ along)
+
+
+def _travel_in_space(pairing: Pairing, motion: RigidMotion) -> np.ndarray:
+    """Displacement along the axes of the frame in the middle of a face, and rotation, (3,)."""
+    middle, frame = middle_in_space(pairing)
+    return np.append(frame.axes @ motion.at(middle), motion.rotation @ frame.pole)
+
+
+def middle_in_space(pairing: Pairing) -> tuple[np.ndarray, TangentFrame]:
+    """Middle of a face in space (3,), and its frame by the mean normal."""
+    middle = pairing.weights @ pairing.points / pairing.weights.sum()
+    return middle, frame_in_space(pairing.normals, pairing.weights)
 
 
 def _middle(pairing: Pairing) -> tuple[np.ndarray, np.ndarray]:
@@ -189,47 +136,71 @@ def _middle(pairing: Pairing) -> tuple[np.ndarray, np.ndarray]:
 
 
 def condense_tangential(
-    elastic: Elasticity, contacts: Contacts, basis: Basis, held: Sequence[HeldMotion]
+    elastic: Elasticity,
+    contacts: Contacts,
+    basis: Basis,
+    held: Sequence[HeldMotion],
+    frame: np.ndarray | None = None,
 ) -> FrictionalContact:
-    """Condense elasticity to pressure and shear in one solution. Every rank calls.
+    """Condense elasticity to pressure and shear. Every rank calls.
 
     Parameters
     ----------
     elastic : Elasticity
     contacts : Contacts
-        Contact points of a plane or axisymmetric model.
     basis : ndarray or csr_array, shape (n, m)
         Ψ, from `pressure.pressure_basis`.
     held : sequence of HeldMotion
         Motions of the holders.
+    frame : ndarray, shape (t, n, gdim), optional
+        Tangential directions, see `tangential_frame`.
 
     Raises
     ------
     ComputationError
         If the elastic problem cannot be solved.
     """
+    frame = tangential_frame(contacts) if frame is None else frame
+    traces = [vector_trace(elastic.spaces, contacts, e) for e in _measured(contacts, frame)]
+    along = np.stack([travel(contacts, each) for each in held], axis=-1)
+    rigid = closure(contacts, held, frame)
+    if contacts.in_space:
+        weighted = scaled(contacts.weights, basis)
+        compliance = _compliance(elastic, traces, weighted)
+        modes = weak(weighted, rigid)
+        operators = contacts.gap, rigid, compliance, modes, along, tuple(held)
+        return SurfaceContact(basis, weighted, *operators)
     basis = dense(basis)
-    weighted = scaled(contacts.weights, basis)
-    directions = [contacts.normals, *-tangents(contacts.normals)]
-    traces = [vector_trace(elastic.spaces, contacts, direction) for direction in directions]
-    sparse = sp.csr_matrix(weighted)
+    sparse = sp.csr_matrix(scaled(contacts.weights, basis))
     influence = elastic.solve(sp.hstack([trace @ sparse for trace in traces], format="csr"))
     comm = elastic.bodies.comm
     response = sum_over_ranks(comm, np.array([trace.T @ influence for trace in traces]))
-    along = np.reshape([travel(contacts, each) for each in held], (len(held), -1)).T
-    rigid = closure(contacts, held)
     return frictional_contact(
         basis, contacts.weights, contacts.gap, response, rigid, along, held, influence
     )
 
 
-def closure(contacts: Contacts, held: Sequence[HeldMotion]) -> np.ndarray:
+def _compliance(elastic: Elasticity, traces: list[sp.csr_matrix], weighted: Basis) -> np.ndarray:
+    """Compliance A, shape (M, M), from blocks of columns of which nothing is kept. Collective."""
+    sparse, spaces = sp.csr_matrix(weighted), elastic.spaces
+    loads = sp.hstack([trace @ sparse for trace in traces], format="csr")
+    touching = np.flatnonzero(np.diff(loads.indptr))
+    body = np.searchsorted(spaces.starts, touching, side="right") - 1
+    near, result = loads[touching], np.zeros((loads.shape[1],) * 2)
+    for found in elastic_columns(elastic, loads.tocsc()):
+        inside = np.flatnonzero(np.isin(body, spaces.groups[found.group]))
+        rows = spaces.within(found.group, touching[inside])
+        result[:, found.columns] += near[inside].T @ found.displacements[rows]
+    result = sum_over_ranks(elastic.bodies.comm, result)
+    return (result + result.T) / 2
+
+
+def closure(contacts: Contacts, held: Sequence[HeldMotion], frame: np.ndarray) -> np.ndarray:
     """Matrix R at the points, shape (1 + t, n, k), see `FrictionalContact`."""
     modes = [RigidMode(each.motion, amplitude=0.0, bodies=each.bodies) for each in held]
-    directions = [contacts.normals, *-tangents(contacts.normals)]
-    return np.array([hold(contacts, each, modes).force_response for each in directions])
+    return np.array([hold(contacts, e, modes).force_response for e in _measured(contacts, frame)])
 
 
-def weak(weighted: np.ndarray, rigid: np.ndarray) -> np.ndarray:
-    """Weak modes, shape (M, k), of a matrix R at the points, shape (1 + t, n, k)."""
-    return np.concatenate([weighted.T @ component for component in rigid])
+def _measured(contacts: Contacts, frame: np.ndarray) -> list[np.ndarray]:
+    """Directions of gap and slips: the normals, and the reversed tangential directions."""
+    return [contacts.normals, *-frame]

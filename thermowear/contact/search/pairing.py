@@ -17,7 +17,7 @@ equilibrium when ``Tᵀ w p = F`` with ``T = m·(n + mu e)``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -91,7 +91,7 @@ class Pairing:
         Group of equally wearing materials of body 1 and of body 2 at each point. Points at a border
         of groups exist once for each.
     pieces : Rule
-        Quadrature rule on all pieces of the facets of body 1, before merging of points.
+        Quadrature rule on all pieces of the facets of body 1, and the points merged from it.
     """
 
     points: np.ndarray
@@ -180,7 +180,7 @@ def paired(
 ) -> Pairing:
     """Pair two faces at given points of the face of body 1, merging coincident points.
 
-    Parameters as in `pair`.
+    Points merged before stay merged. Parameters as in `pair`.
     """
     facet, t = pieces.facet, pieces.t
     on_face = face_1.points(facet, t)
@@ -193,10 +193,12 @@ def paired(
         raise CaseError(ambiguity_message(face_1, face_2))
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
     position = face_1.position(facet, t)
-    # on a curve by arc length: both ends of a closed one coincide in space
-    places = on_face if isinstance(face_1, Surface) else position[:, None]
-    groups = _groups(face_1, facet, t, face_2.group_at(pairs.facet))
-    point, first = _merged(places, _COINCIDENCE_TOLERANCE * face_1.extent, groups)
+    groups, point = _groups(face_1, facet, t, face_2.group_at(pairs.facet)), pieces.point
+    if point is None:
+        # on a curve by arc length: both ends of a closed one coincide in space
+        places = on_face if isinstance(face_1, Surface) else position[:, None]
+        point = _merged(places, _COINCIDENCE_TOLERANCE * face_1.extent, groups)
+    _, first = np.unique(point, return_index=True)
     summed = np.column_stack([np.bincount(point, n) for n in pairs.normals.T])
     normals = summed / np.linalg.norm(summed, axis=1, keepdims=True)
     sides = (
@@ -213,7 +215,7 @@ def paired(
         sides=sides,
         unpaired=max(unpaired, 0.0),
         groups=groups[:, first],
-        pieces=pieces,
+        pieces=replace(pieces, point=point),
     )
 
 
@@ -246,15 +248,13 @@ def _groups(
     return np.array([face_1.group_at(facet), low[facet]])
 
 
-def _merged(points: np.ndarray, near: float, groups: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Merge coincident points of the same groups of materials.
+def _merged(points: np.ndarray, near: float, groups: np.ndarray) -> np.ndarray:
+    """Merge coincident points (n, gdim) of the same groups of materials.
 
     Returns
     -------
-    point : ndarray of int, shape (n,)
-        Merged point of each, in the order of appearance.
-    first : ndarray of int, shape (n_merged,)
-        First point of each merged one.
+    ndarray of int, shape (n,)
+        Merged point of each, numbered in the order of appearance.
     """
     pairs = cKDTree(points).query_pairs(near, output_type="ndarray")
     pairs = pairs[np.all(groups[:, pairs[:, 0]] == groups[:, pairs[:, 1]], axis=0)]
@@ -264,4 +264,4 @@ def _merged(points: np.ndarray, near: float, groups: np.ndarray) -> tuple[np.nda
     order = np.argsort(first)
     rank = np.empty(len(order), dtype=np.int64)
     rank[order] = np.arange(len(order))
-    return rank[group], first[order]
+    return rank[group]

@@ -38,11 +38,14 @@ class Rule:
         Parameters.
     weight : ndarray, shape (n,)
         Length or area in parameters; the sum is that of the facet if it is fully opposite.
+    point : ndarray of int or None, shape (n,)
+        Contact point that each point is merged into; None before it is paired.
     """
 
     facet: np.ndarray
     t: np.ndarray
     weight: np.ndarray
+    point: np.ndarray | None = None
 
 
 def rule(

@@ -10,6 +10,7 @@ import numpy as np
 from ..mesh.nodes import chord_lengths
 from ..mesh.tagged import TaggedMesh, compact, quadratic
 from ..moving.moved import Extension, MovableBody
+from ..moving.moved_solid import MovableSolid
 from ..moving.outline import loops
 from ..reading.export import write_mesh
 from .design import Design
@@ -21,8 +22,9 @@ _ALONG = 0.2
 def moved_body(mesh: TaggedMesh, design: Design, face: str, extension: Extension) -> np.ndarray:
     """Nodes of a body after its contact face has been moved to a worn shape.
 
-    Plane bodies as in `moving.moved`; in space the body is a prism on its face, z upwards, whose
-    nodal displacement decreases linearly with height.
+    Plane bodies as in `moving.moved`, bodies of tetrahedra as in `moving.moved_solid`; one of
+    hexahedra is a prism on its face, z upwards, whose nodal displacement decreases linearly with
+    height.
 
     Parameters
     ----------
@@ -32,13 +34,15 @@ def moved_body(mesh: TaggedMesh, design: Design, face: str, extension: Extension
     face : str
         Name of its contact face.
     extension : callable
-        Factory of harmonic extensions, for the interior nodes of a plane body.
+        Factory of harmonic extensions, for the interior nodes.
 
     Returns
     -------
     ndarray, shape (n_points, gdim) [m]
     """
     points = mesh.points
+    if mesh.cell_type == "tetrahedron":
+        return points + _sunk(mesh, design, face, extension)
     if points.shape[1] == 3:
         low, high = points[:, 2].min(), points[:, 2].max()
         foot = np.column_stack([points[:, :2], np.full(len(points), low)])
@@ -51,6 +55,18 @@ def moved_body(mesh: TaggedMesh, design: Design, face: str, extension: Extension
     ]
     follow = extension(mesh, mesh.cell_type, mesh.cells, None)
     return points + follow(body.outlined(face_motion(design, on_face, ends)))
+
+
+def _sunk(mesh: TaggedMesh, design: Design, face: str, extension: Extension) -> np.ndarray:
+    """Displacement of the nodes of a body of tetrahedra, shape (n_points, 3) [m]."""
+    on_face = mesh.points[np.unique(mesh.facets_of(face))]
+    body = MovableSolid(mesh, mesh.bodies, on_face, extension)
+    normals = design.normals_at(mesh.points[body.face])
+    paths, held = body.motion_paths(normals)
+    depth = np.where(held, 0.0, design.depth_at(mesh.points[body.face]))
+    along = np.einsum("ni,ni->n", paths, normals)
+    outlined = body.outlined(-(depth / along)[:, None] * paths)
+    return extension(mesh, mesh.cell_type, mesh.cells, None)(outlined)
 
 
 def only_body(mesh: TaggedMesh, parts: tuple[str, ...]) -> TaggedMesh:

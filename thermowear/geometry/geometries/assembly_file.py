@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from collections.abc import Iterable, Mapping
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import (
     BeforeValidator,
@@ -63,7 +63,7 @@ class AssemblyFile(AssemblyGeometry):
     """
 
     name = "file"
-    models = ("axisymmetric", "plane-strain", "plane-stress", "3d")
+    models: ClassVar[tuple[str, ...]] = ("axisymmetric", "plane-strain", "plane-stress", "3d")
     from_file = True
 
     type: Literal["file"]
@@ -81,11 +81,11 @@ class AssemblyFile(AssemblyGeometry):
     def _complete(self, info: ValidationInfo):
         model = (info.context or {}).get(MODEL) or ""
         self._in_space, self._plane = model == "3d", model.startswith("plane")
-        if len(self.body_names) < 2:
-            raise KeyFault("bodies", f"needs two or more bodies; found {len(self.body_names)}")
+        if len(self.bodies) < 2:
+            raise KeyFault("bodies", f"needs two or more bodies; found {len(self.bodies)}")
         if self.paths and self.path is not None:
             raise KeyFault("paths", "only one of path and paths can be given")
-        if self.paths and set(self.paths) != set(self.body_names):
+        if self.paths and set(self.paths) != set(self.bodies):
             raise KeyFault("paths", f"needs a file for each of: {', '.join(self.bodies)}")
         if not self.paths and self.path is None:
             raise KeyFault("path", "missing")
@@ -97,7 +97,7 @@ class AssemblyFile(AssemblyGeometry):
     def _check_surfaces(self) -> None:
         owners: dict[str, str] = {}
         for body, names in self.surface_names.items():
-            if body not in self.body_names:
+            if body not in self.bodies:
                 known = ", ".join(self.bodies)
                 raise KeyFault(f"surfaces.{body}", f"unknown body; must be one of: {known}")
             for name in names:
@@ -122,10 +122,14 @@ class AssemblyFile(AssemblyGeometry):
 
     @property
     def surfaces(self) -> tuple[str, ...]:
-        return tuple(name for names in self.surface_names.values() for name in names)
+        return tuple(name for names in self._surfaces_of().values() for name in names)
+
+    def _surfaces_of(self) -> Mapping[str, Iterable[str]]:
+        """Names of surfaces by body."""
+        return self.surface_names
 
     def body_of(self, surface: str) -> str:
-        return next(body for body, names in self.surface_names.items() if surface in names)
+        return next(body for body, names in self._surfaces_of().items() if surface in names)
 
     @property
     def zones(self) -> dict[str, str]:  # type: ignore[override]

@@ -92,7 +92,7 @@ class MeshFile(HalvableGeometry):
     """
 
     name = "file"
-    models = ("axisymmetric", "plane-strain", "plane-stress", "3d")
+    models: ClassVar[tuple[str, ...]] = ("axisymmetric", "plane-strain", "plane-stress", "3d")
     from_file = True
 
     type: Literal["file"]
@@ -118,13 +118,13 @@ class MeshFile(HalvableGeometry):
     @model_validator(mode="after")
     def _complete(self, info: ValidationInfo):
         self._in_space = (info.context or {}).get(MODEL) == "3d"
-        if len(self.body_names) != 2:
+        if len(self.bodies) != 2:
             raise KeyFault(
-                "bodies", f"needs two bodies, the held one first; found {len(self.body_names)}"
+                "bodies", f"needs two bodies, the held one first; found {len(self.bodies)}"
             )
         if self.paths and self.path is not None:
             raise KeyFault("paths", "only one of path and paths can be given")
-        if self.paths and set(self.paths) != set(self.body_names):
+        if self.paths and set(self.paths) != set(self.bodies):
             raise KeyFault("paths", f"needs a file for each of: {', '.join(self.bodies)}")
         if not self.paths and self.path is None:
             raise KeyFault("path", "missing")
@@ -253,7 +253,7 @@ class MeshFile(HalvableGeometry):
 
     def _purposes(self) -> dict[str, Named]:
         """All surfaces by their names in the case."""
-        (upper, lower) = self.contact_names
+        (upper, lower) = self.contact
         uses: list[tuple[str, str, int | None]] = [("contact", upper, 0), ("contact", lower, 1)]
         uses += [("held", self.held_name, 0), ("fixed", self.fixed_name, 1)]
         uses += [("symmetry", name, None) for name in self.symmetry_names]
@@ -264,5 +264,9 @@ class MeshFile(HalvableGeometry):
         for use, name, body in uses:
             renamed = name in self.surface_names
             key = f"geometry.surfaces.{name}" if renamed else f"geometry.{use}"
-            result.setdefault(name, Named(name, (self.surface_names.get(name, name),), key, body))
+            result.setdefault(name, Named(name, (self._in_file(name),), key, body))
         return result
+
+    def _in_file(self, name: str) -> str:
+        """Name in the file of a surface."""
+        return self.surface_names.get(name, name)

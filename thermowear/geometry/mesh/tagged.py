@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...lagrange import order_of
+from . import tetrahedra
 from .nodes import FACETS, reference_nodes, shape_functions, slopes
 
 _PLACES = {2: 7, 3: 4}
@@ -165,7 +166,12 @@ def jacobians(
 
 
 def scaled_jacobians(mesh: TaggedMesh) -> np.ndarray:
-    """Smallest scaled Jacobian of each cell, see `jacobians`, shape (n_cells,)."""
+    """Smallest scaled Jacobian of each cell, shape (n_cells,).
+
+    See `jacobians`, for tetrahedra `tetrahedra.scaled_jacobians`.
+    """
+    if mesh.cell_type == "tetrahedron":
+        return tetrahedra.scaled_jacobians(mesh.order, mesh.points[mesh.cells])
     along = _PLACES[mesh.points.shape[1]]
     return jacobians(mesh.cell_type, mesh.order, mesh.points[mesh.cells], along)[0]
 

@@ -54,11 +54,14 @@ class Patches:
         Facets of the patches that meet the face at a sharp edge.
     seams : ndarray of int, shape (n, order + 1)
         Edges between two such patches: both ends, then the interior nodes.
+    own : ndarray of int, shape (n, nodes_per_facet)
+        Facets of the face.
     still : ndarray of int, shape (n,)
         Nodes of all other patches.
     """
 
     def __init__(self, mesh: TaggedMesh, cells: np.ndarray, face: np.ndarray):
+        self._mesh = mesh
         self._points, self._order, self._kind = mesh.points, mesh.order, mesh.facet_type
         self.facets = boundary(mesh.cell_type, mesh.order, cells)
         on_face = np.logical_and.reduce(np.isin(self.facets, face), axis=1)
@@ -69,7 +72,7 @@ class Patches:
         smooth = np.einsum("ei,ei->e", one, other) > _SMOOTH
         facet = pairs // sides
         inside = ~on_face[facet].any(axis=1)
-        patch = components(facet[inside & smooth], len(self.facets))
+        self._patch = patch = components(facet[inside & smooth], len(self.facets))
         rim = on_face[facet[:, 0]] != on_face[facet[:, 1]]
         beside = np.where(on_face[facet[:, 0]], *pairs.T[::-1])
         self._sharp, self._level = beside[rim & ~smooth], beside[rim & smooth]
@@ -77,15 +80,42 @@ class Patches:
         between = inside & (patch[facet[:, 0]] != patch[facet[:, 1]]) & slides[facet].all(axis=1)
         self.sliding = self.facets[slides]
         self.seams = self._edges.reshape(-1, mesh.order + 1)[pairs[between, 0]]
+        self.own = self.facets[on_face]
         self.still = np.unique(self.facets[~slides & ~on_face])
 
-    def inward(self) -> tuple[np.ndarray, np.ndarray]:
+    def inward(self, extension: Extension) -> tuple[np.ndarray, np.ndarray]:
         """Nodes where the face ends at a sharp edge, and unit vectors from them along the side.
 
-        Shapes (n,) and (n, 3); at a corner the vector runs along the seam.
+        Shapes (n,) and (n, 3); at a corner the vector runs along the seam. In a side of triangles
+        vectors are normal to the edge in its middle, and turn towards the seams at its ends.
+
+        Parameters
+        ----------
+        extension : callable
+            Factory of harmonic extensions along the edges.
         """
         local = edge_nodes(self._kind, self._order)
         facet, side = np.divmod(self._sharp, len(local))
+        edges, along = self._edges[facet, side], self._from_edges(facet, side)
+        nodes = np.unique(edges)
+        at_seams = self._seams_from(nodes)
+        summed = np.zeros((len(self._points), 3))
+        for number in np.unique(self._patch[facet]):
+            own = self._patch[facet] == number
+            vectors = np.zeros_like(summed)
+            np.add.at(vectors, edges[own].ravel(), along[own].reshape(-1, 3))
+            ends = np.unique(edges[own])
+            vectors[ends] /= np.linalg.norm(vectors[ends], axis=1, keepdims=True)
+            if self._kind == "triangle":
+                vectors += self._turn(edges[own], vectors, at_seams, extension)
+            summed += vectors
+        for ends, seams in at_seams:
+            summed[ends] = seams
+        return nodes, summed[nodes] / np.linalg.norm(summed[nodes], axis=1, keepdims=True)
+
+    def _from_edges(self, facet: np.ndarray, side: np.ndarray) -> np.ndarray:
+        """Unit vectors into facets from the nodes of their edges, shape (n, order + 1, 3)."""
+        local = edge_nodes(self._kind, self._order)
         at = slopes(self._kind, self._order, reference_nodes(self._kind, self._order))[local[side]]
         tangents = np.einsum("eqdk,eki->eqdi", at, self._points[self.facets[facet]])
         along = np.einsum("ed,eqdi->eqi", _INWARD[self._kind][side], tangents)
@@ -94,22 +124,34 @@ class Patches:
             edge = np.einsum("ed,eqdi->eqi", (np.roll(corners, -1, 0) - corners)[side], tangents)
             part = (along * edge).sum(axis=2) / (edge**2).sum(axis=2)
             along -= part[..., None] * edge
-        along /= np.linalg.norm(along, axis=2, keepdims=True)
-        nodes, place = np.unique(self._edges[facet, side], return_inverse=True)
-        summed = np.zeros((len(nodes), 3))
-        np.add.at(summed, place.ravel(), along.reshape(-1, 3))
-        for end, seams in self._seams_from(nodes):
-            summed[end] = seams
-        return nodes, summed / np.linalg.norm(summed, axis=1, keepdims=True)
+        return along / np.linalg.norm(along, axis=2, keepdims=True)
+
+    def _turn(
+        self,
+        edges: np.ndarray,
+        vectors: np.ndarray,
+        at_seams: list[tuple[np.ndarray, np.ndarray]],
+        extension: Extension,
+    ) -> np.ndarray:
+        """Change of vectors (n_points, 3) along the edge of a side, by which they turn to seams."""
+        known, given = np.zeros(len(self._points), dtype=bool), np.zeros_like(vectors)
+        for ends, seams in at_seams:
+            here = np.isin(ends, edges)
+            given[ends[here]] = seams[here] - vectors[ends[here]]
+            known[ends[here]] = True
+        if not known.any():
+            return given
+        return extension(self._mesh, "interval", edges, known)(given)
 
     def _seams_from(self, nodes: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Indices of nodes (n,) at the first or last end of a seam, and tangents away from it."""
+        """Some of the nodes (n,), at the first or last end of a seam, and unit tangents there."""
         derivatives = slopes("interval", self._order, np.array([[0.0], [1.0]]))[:, 0]
         tangents = np.einsum("qk,ski->qsi", derivatives, self._points[self.seams])
         found = []
         for end, tangent in enumerate((tangents[0], -tangents[1])):
             starts = np.isin(self.seams[:, end], nodes) & ~np.isin(self.seams[:, 1 - end], nodes)
-            found.append((np.searchsorted(nodes, self.seams[starts, end]), tangent[starts]))
+            size = np.linalg.norm(tangent[starts], axis=1, keepdims=True)
+            found.append((self.seams[starts, end], tangent[starts] / size))
         return found
 
     def level(self) -> np.ndarray:
@@ -151,11 +193,19 @@ class MovableSolid(MovableFace):
         self._patches = Patches(mesh, cells_of(mesh, parts), self.face)
 
     def motion_paths(self, normals):
-        every = np.zeros_like(self._mesh.points)
+        # from the rim on the inclination to the normal varies harmonically, as paths must not cross
+        every, turn = np.zeros_like(self._mesh.points), np.zeros_like(self._mesh.points)
         every[self.face] = normals
-        nodes, inward = self._patches.inward()
-        every[nodes] = -inward
-        return every[self.face], np.isin(self.face, self._patches.level())
+        nodes, inward = self._patches.inward(self._extension)
+        level, known = self._patches.level(), np.zeros(len(every), dtype=bool)
+        turn[nodes] = -inward - every[nodes]
+        known[nodes] = known[level] = True
+        if np.any(turn != 0.0):
+            turn = self._extension(self._mesh, self._mesh.facet_type, self._patches.own, known)(
+                turn
+            )
+        paths = (every + turn)[self.face]
+        return paths / np.linalg.norm(paths, axis=1, keepdims=True), np.isin(self.face, level)
 
     def outlined(self, displacement):
         given = np.zeros_like(self._mesh.points)

@@ -79,7 +79,7 @@ def meshed_anew(
     if not found:
         raise ComputationError(f"remeshing: gmsh could not mesh the worn body: {trouble}")
     best = max(found, key=lambda body: float(scaled_jacobians(body).min()))
-    return _replaced(mesh, parts, best), new
+    return with_body(mesh, parts, best), new
 
 
 def _meshed(
@@ -207,7 +207,7 @@ def _elements(model, dim: int, tag: int) -> np.ndarray:
     return nodes[0].reshape(len(elements[0]), -1).astype(np.int64)
 
 
-def _replaced(mesh: TaggedMesh, parts: tuple[str, ...], body: TaggedMesh) -> TaggedMesh:
+def with_body(mesh: TaggedMesh, parts: tuple[str, ...], body: TaggedMesh) -> TaggedMesh:
     """Mesh with a new body in place of the one with these parts."""
     stays = ~np.isin(mesh.cell_tags, mesh.tags_of(parts))
     other = np.zeros(len(mesh.points), dtype=bool)

@@ -47,6 +47,16 @@ def read_bodies(
     """
     contents = _contents(path, {body: paths[body] for body in cells if paths}, dim)
     contents = replace(contents, points=contents.points * length_unit)
+    return bodies_in(contents, cells, surfaces, with_material)
+
+
+def bodies_in(
+    contents: MeshContents,
+    cells: Mapping[str, tuple[str, ...]],
+    surfaces: Sequence[Named],
+    with_material: Mapping[str, Mapping[str, str]],
+) -> AnyMesh:
+    """Mesh of bodies from contents in metres, see `read_bodies`."""
     bodies = [
         Named(body, sets, f"geometry.bodies.{body}", index)
         for index, (body, sets) in enumerate(cells.items())

@@ -61,7 +61,7 @@ def read_contents(path: Path, dim: int = 2, key: str = "geometry.path") -> MeshC
     if kind is None:
         raise CaseError(f"{key}: {path}: unknown file ending; must be one of: {', '.join(_KINDS)}")
     try:
-        _check_file(path, kind, _LARGEST[dim])
+        check_file(path, kind.name, kind.heads, _LARGEST[dim])
         contents = kind.read(path, dim).checked(dim)
     except OSError as error:
         raise CaseError(f"{key}: {path} cannot be read: {error.strerror}") from None
@@ -74,8 +74,23 @@ def read_contents(path: Path, dim: int = 2, key: str = "geometry.path") -> MeshC
     return contents
 
 
-def _check_file(path: Path, kind: _Kind, largest: int) -> None:
-    """Reject non-files, files too large, and files without the first bytes of the format."""
+def check_file(path: Path, name: str, heads: tuple[bytes, ...], largest: int) -> None:
+    """Reject non-files, files too large, and files without the first bytes of the format.
+
+    Parameters
+    ----------
+    path : Path
+    name : str
+        Name of the format, for the message.
+    heads : tuple of bytes
+        What a file begins with.
+    largest : int
+        Largest size [bytes].
+
+    Raises
+    ------
+    OSError, ValueError
+    """
     about = os.stat(path)
     if stat.S_ISDIR(about.st_mode):
         raise ValueError("Is a directory")
@@ -89,9 +104,9 @@ def _check_file(path: Path, kind: _Kind, largest: int) -> None:
         head = file.read(4096).removeprefix(_MARK).lstrip()
     if not head:
         raise ValueError("it is empty")
-    if not head.startswith(kind.heads):
+    if not head.startswith(heads):
         raise ValueError(
-            f"it is not a {kind.name}: it begins with {shown(head.splitlines()[0])}; only meshes "
+            f"it is not a {name}: it begins with {shown(head.splitlines()[0])}; only meshes "
             "are read, commands are never executed"
         )
 

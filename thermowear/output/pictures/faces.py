@@ -76,7 +76,7 @@ def draw_faces(path: Path, grid, interface: TableColumns, seen: Seen) -> None:
 def contact_face(interface: TableColumns):
     """Contact points as a surface with pressure and shape in the units of plots [mm]."""
     x, y, z = map(interface.drawn, "xyz")
-    triangles = triangulated(x, y).get_masked_triangles()
+    triangles = triangulated(x, y, interface.drawn("weight")).get_masked_triangles()
     corners = np.column_stack([np.full(len(triangles), 3), triangles])
     face = pyvista.PolyData(np.column_stack([x, y, z]), corners.ravel())
     for name in ("pressure", "shape"):

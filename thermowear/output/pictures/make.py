@@ -6,11 +6,16 @@ import os
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
 from ...balances import violated
 from ...errors import CaseError, ComputationError
+from ...geometry.mesh.mixed import AnyMesh
+from ...geometry.mesh.outside import outside
 from ..files import contacts_of, name_at, picture, read_summary
 from ..tables import MissingColumnError
 from . import curves, maps, over_time
@@ -30,6 +35,7 @@ _OVER_A_SURFACE: dict[str, Callable[..., None]] = {
     "interface": maps.draw_interface_maps,
     "wear": maps.draw_wear_maps,
     "coating": maps.draw_coating_maps,
+    "friction": maps.draw_friction_maps,
     "mode": draw_modes,
 }
 _OF_THE_INTERFACE = ("wear", "coating")
@@ -103,6 +109,33 @@ def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
     """
     check_animation(folder, path)
     reason = _animate(folder, path, fps)
+    if reason:
+        raise ComputationError(f"{path}: could not be drawn: {reason}")
+
+
+def make_mesh_picture(mesh: AnyMesh, path: Path) -> None:
+    """Draw the mesh of bodies in space with its named surfaces.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh or MixedMesh
+        Mesh whose bodies have no zones.
+    path : Path
+        File to write, ``.png``.
+
+    Raises
+    ------
+    ComputationError
+        If drawing fails.
+    """
+    arrays = {"bodies": np.array(mesh.bodies), "surfaces": np.array(mesh.surfaces)}
+    for b, body in enumerate(mesh.bodies):
+        names = f"points_{b}", f"facets_{b}", f"surface_{b}"
+        arrays |= dict(zip(names, outside(mesh, body), strict=True))
+    with tempfile.TemporaryDirectory() as folder:
+        source = Path(folder) / "mesh.npz"
+        np.savez(source, allow_pickle=False, **arrays)
+        reason = _render("mesh", str(source), str(path.resolve()))
     if reason:
         raise ComputationError(f"{path}: could not be drawn: {reason}")
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
 from matplotlib.tri import Triangulation
 
 from .. import tables
@@ -17,12 +18,21 @@ from .panels import MAP_STYLE, color_map, label_coordinates, panels
 
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
 _LINES = 8
+_ARROWS = 22
+"""Number of arrows along each side of a face."""
+_SMALL = 0.02
+"""Part of the largest value from which arrows are drawn."""
+_STATUS_COLORS = ListedColormap(["white", "tab:blue", "tab:orange"])
 _SPACES = ("figure.constrained_layout.wspace", "figure.constrained_layout.hspace")
 _STYLE = MAP_STYLE | dict.fromkeys(_SPACES, 0.06)
 _LARGEST_ANGLE = 100.0
 """Largest angle of a long boundary triangle [degrees]; larger ones lie outside the face."""
 _SHORT = 0.1
 """Length of a boundary edge relative to the face, up to which a triangle of any angle is drawn."""
+
+_GAP, _LONG, _ROUNDS = 0.8, 6.0, 4
+"""Area of a triangle relative to that of its corners above which it lies across a gap; length of a
+side relative to the root of a point's area, and number of triangles beside it that do so, too."""
 
 
 def is_surface(folder: Path) -> bool:
@@ -59,18 +69,64 @@ def draw_coating_maps(folder: Path, contact: str = "") -> None:
         _draw(folder / picture("coating", contact), data, names, f"coating after {end:.4g} s")
 
 
+def draw_friction_maps(folder: Path, contact: str = "") -> None:
+    """Draw ``friction.png``: shear with its direction, slip, dissipated energy and status."""
+    data = tables.read(folder / name_at("friction", None, contact))
+    names = [name for name in ("shear", "slip", "dissipated") if np.any(data[name])]
+    if "shear_x" not in data or not names:
+        return
+    triangles = triangulated(data.drawn("x"), data.drawn("y"))
+    path = folder / picture("friction", contact)
+    with _maps(path, triangles, len(names) + 1) as (_, axes):
+        for axis, name in zip(axes.flat, names, strict=False):
+            _map(axis, triangles, data, name)
+            if name in ("shear", "slip"):
+                _arrows(axis, triangles, data, name)
+        _statuses(axes.flat[len(names)], triangles, data)
+
+
+def _arrows(axis: Axes, triangles: Triangulation, data: tables.TableColumns, name: str) -> None:
+    """Draw the directions of shear or slip on a grid of points, where it is not small."""
+    x, y = (np.linspace(v.min(), v.max(), _ARROWS + 1) for v in (triangles.x, triangles.y))
+    points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    places = np.column_stack([triangles.x, triangles.y])
+    at = np.unique(np.linalg.norm(places - points[:, None], axis=2).argmin(axis=1))
+    size = data[name][at]
+    at, size = at[size > _SMALL * data[name].max()], size[size > _SMALL * data[name].max()]
+    along = (data[f"{name}_{axis_}"][at] / size for axis_ in "xy")
+    options = {"scale": 1.3 * _ARROWS, "width": 0.004, "pivot": "mid", "color": "black"}
+    axis.quiver(triangles.x[at], triangles.y[at], *along, **options)
+
+
+def _statuses(axis: Axes, triangles: Triangulation, data: tables.TableColumns) -> None:
+    """Colour open, sticking and slipping parts of a face."""
+    middle = data["status"][triangles.triangles].max(axis=1)
+    colored = axis.tripcolor(triangles, middle, cmap=_STATUS_COLORS, vmin=-0.5, vmax=2.5)
+    axis.set(
+        xlim=(triangles.x.min(), triangles.x.max()), ylim=(triangles.y.min(), triangles.y.max())
+    )
+    bar = axis.figure.colorbar(colored, ax=axis, ticks=(0, 1, 2), shrink=0.9)
+    bar.ax.set_yticklabels(("open", "stick", "slip"))
+    label_coordinates(axis, data)
+
+
 def _draw(path: Path, data: tables.TableColumns, names: list[str], title: str = "") -> None:
     """Draw a map of each quantity, two per row."""
-    triangles = triangulated(data.drawn("x"), data.drawn("y"))
-    ratio = np.clip(np.ptp(triangles.y) / np.ptp(triangles.x), 0.3, 2.5)
-    size = (_LONGER_SIDE / max(1.0, ratio) + 2.2, _LONGER_SIDE * min(1.0, ratio) + 0.8)
-    margin = (0.0, 0.3 if title else 0.0)
-    options: dict[str, Any] = {"margin": margin, "style": _STYLE, "crop": True}
-    with panels(path, len(names), 2, size, **options) as (figure, axes):
+    triangles = triangulated(*(data.drawn(name) for name in ("x", "y", "weight")))
+    with _maps(path, triangles, len(names), title) as (figure, axes):
         for axis, name in zip(axes.flat, names, strict=False):
             _map(axis, triangles, data, name)
         if title:
             figure.suptitle(title, fontsize=11)
+
+
+def _maps(path: Path, triangles: Triangulation, count: int, title: str = ""):
+    """Panels for maps of a face, two per row."""
+    ratio = np.clip(np.ptp(triangles.y) / np.ptp(triangles.x), 0.3, 2.5)
+    size = (_LONGER_SIDE / max(1.0, ratio) + 2.2, _LONGER_SIDE * min(1.0, ratio) + 0.8)
+    margin = (0.0, 0.3 if title else 0.0)
+    options: dict[str, Any] = {"margin": margin, "style": _STYLE, "crop": True}
+    return panels(path, count, 2, size, **options)
 
 
 def _map(axis: Axes, triangles: Triangulation, data: tables.TableColumns, name: str) -> None:
@@ -89,16 +145,26 @@ def draw_colors(axis: Axes, triangles: Triangulation, values: np.ndarray, name: 
     return axis.tripcolor(triangles, values, shading="gouraud", cmap=color_map(name), **options)
 
 
-def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:
-    """Triangulate points of a face that need not be convex.
+def triangulated(x: np.ndarray, y: np.ndarray, weights: np.ndarray | None = None) -> Triangulation:
+    """Triangulate points of a face that need not be convex, nor in one piece.
 
     The Delaunay triangulation fills the convex hull. Triangles at the boundary of a grid of points
     have an angle of 90° opposite to the boundary; triangles outside a concave boundary are much
     flatter, and are masked unless they are small, as between scattered points at a round edge.
+    Triangles across a slot are larger than the area of their points.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (n,)
+    weights : ndarray, shape (n,), optional
+        Area of each point.
     """
     result = Triangulation(x, y)
     corners = np.stack([x, y], axis=1)[result.triangles]
     neighbors, hidden = result.neighbors.copy(), np.zeros(len(corners), dtype=bool)
+    if weights is not None:
+        hidden |= _across_gaps(result, corners, weights)
+        neighbors[np.isin(neighbors, np.flatnonzero(hidden))] = -1
     # side k of a triangle goes from corner k to the next; the remaining corner is opposite
     to_first, to_second = (corners - np.roll(corners, shift, axis=1) for shift in (1, -1))
     opposite = np.roll(_angles(-to_second, -to_first), -2, axis=1)
@@ -111,6 +177,26 @@ def triangulated(x: np.ndarray, y: np.ndarray) -> Triangulation:
             return result
         hidden |= flat
         neighbors[np.isin(neighbors, np.flatnonzero(flat))] = -1
+
+
+def _across_gaps(triangles: Triangulation, corners: np.ndarray, weights: np.ndarray) -> np.ndarray:
+    """Mask of triangles across gaps: larger than the area of their corners, or thin beside those.
+
+    Areas are averaged over neighbours, as points of small pieces of facets have very small ones.
+    """
+    nodes = triangles.triangles
+    for _ in range(2):
+        of_each = np.repeat(weights[nodes].mean(axis=1), 3)
+        weights = np.bincount(nodes.ravel(), of_each, len(weights))
+        weights = weights / np.maximum(np.bincount(nodes.ravel(), minlength=len(weights)), 1)
+    mean = weights[nodes].mean(axis=1)
+    (a, b), (c, d) = (corners[:, 1:] - corners[:, :1]).transpose(1, 2, 0)
+    found = np.abs(a * d - b * c) / 2 > _GAP * 3 * mean
+    lengths = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    across = (triangles.neighbors >= 0) & (lengths > _LONG * np.sqrt(mean)[:, None])
+    for _ in range(_ROUNDS):
+        found |= (across & found[triangles.neighbors]).any(axis=1)
+    return found
 
 
 def _angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:

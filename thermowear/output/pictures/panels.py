@@ -41,6 +41,9 @@ COLORS = {
     "shape": "cividis",
     "wear": "magma_r",
     "coating_left": "cividis",
+    "shear": "viridis",
+    "slip": "plasma",
+    "dissipated": "magma_r",
 }
 SMALL_CONTACT = 0.15
 """Size of a contact relative to the bodies, below which it gets its own window."""

@@ -75,8 +75,9 @@ class ErrorEstimates:
             return None
         large = ", ".join(f"{_NAMES.get(q, q)} {100 * e:.2g} %" for q, e in above.items())
         return (
-            f"estimated discretisation error above 5 %: {large}; use more mesh.elements "
-            "or a higher mesh.degree, and compare by `run --accuracy`"
+            f"estimated discretisation error above 5 %: {large}; use more mesh.elements, "
+            "for CAD parts a smaller mesh.contact_size, or a higher mesh.degree, and compare by "
+            "`run --accuracy`"
         )
 
 

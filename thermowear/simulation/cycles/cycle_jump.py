@@ -21,7 +21,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ...contact.friction.coulomb_solver import FullSliding
+from ...contact.friction.gross_slip import FullSliding
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...errors import ComputationError
 from .load_path import Increment, Jump, RestartPoint
@@ -175,7 +175,8 @@ class _TwoPartJump:
         worn = before + _nonnegative(state.worn - self.excess - before, cycles.areas)
         dissipated = state.dissipated - self.part * (self.whole.dissipated - state.dissipated)
         balanced = cycles.equilibrium(self.end, worn)
-        return replace(self.end, state=replace(balanced, dissipated=dissipated))
+        found = replace(balanced, dissipated=dissipated, status=state.status)
+        return replace(self.end, state=found)
 
 
 def _growth(error: float, tolerance: float) -> float:

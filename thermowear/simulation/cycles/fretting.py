@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.analyses import FrettingAnalysis
-from ...results import CycleRow, LoadRow
+from ...results import CycleRow, LoadRow, TangentialRow
 from ..interface.body_state import contact_state
 from ..results.recording import Snapshot, snapshot
 from ..runtime.history import AnalysisHistory
@@ -16,7 +16,6 @@ from ..runtime.observer import AnyRow, Observer
 from ..system.system import System
 from .fretting_path import FrettingPath
 from .fretting_rows import (
-    FrettingState,
     contact_rows,
     contact_summary,
     cycle_row,
@@ -24,7 +23,10 @@ from .fretting_rows import (
     holder_summary,
     load_row,
     stick_rows,
+    tangential_rows,
+    tangential_summary,
 )
+from .fretting_state import FrettingState
 from .load_path import Increment
 
 
@@ -61,6 +63,8 @@ class FrettingHistory(AnalysisHistory[Increment]):
             before = None if self._last is None else self._state(self._last)
             rows += [*contact_rows(at, before, path.duration(state)), *stick_rows(at)]
             rows += holder_rows(path.loads, at, path.reactions(state.state))
+        if at.in_space:
+            rows += tangential_rows(path.loads, at, path.reactions(state.state))
         if state.jump is not None:
             assert self._turn is not None  # the first pass ends before the first jump
             start, end = (self._state(i).depths for i in (self._turn, state))
@@ -71,7 +75,7 @@ class FrettingHistory(AnalysisHistory[Increment]):
         return rows
 
     def _state(self, increment: Increment) -> FrettingState:
-        return FrettingState(self._system, increment)
+        return FrettingState(self._system, increment, self._path.frame)
 
     def may_restart(self, state: Increment) -> bool:
         """True at the end of a jump and, before cycle 1, of a segment."""
@@ -95,7 +99,7 @@ class FrettingHistory(AnalysisHistory[Increment]):
         system, at = self._system, self._state(state)
         moved = self._path.loads.of_holders(state.state.motion)
         rates = self._per_cycle / self._duration
-        contact = contact_state(system, at.pressure, at.shear)
+        contact = contact_state(system, at.pressure, at.shear_vectors)
         found = snapshot(system, contact, moved, at.depths, rates)
         gap = found.interface.gap + system.basis @ self._slid_along(state)
         interface = replace(found.interface, gap=gap)
@@ -121,10 +125,12 @@ class FrettingHistory(AnalysisHistory[Increment]):
         """Forces of a pair; numbers of each contact and holder of several bodies."""
         at, path, model = self._state(self.last), self._path, self._system.model
         if model.is_pair:
+            across = self.table(TangentialRow)
             return {
                 "normal_force_N": last.normal_force,
                 "friction_force_N": abs(last.tangential_force),
                 "guide_force_N": None,
+                **(tangential_summary(across[-1]) if across else {}),
             }
         rows = zip(contact_rows(at), stick_rows(at), strict=True)
         contacts = zip(model.interfaces, map(contact_summary, rows), strict=True)

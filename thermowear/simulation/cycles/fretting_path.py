@@ -11,8 +11,9 @@ import numpy as np
 from ...contact.friction.slip_wear import SlipWear, worn_profiles
 from ...contact.friction.stick_slip import advance, follow
 from ...contact.friction.stick_slip_state import StickSlipState, unloaded
+from ...contact.operators.frictional_contact import weak
 from ...contact.operators.pressure import function_ranges
-from ...contact.operators.tangential import closure, condense_tangential, weak
+from ...contact.operators.tangential import closure, condense_tangential, tangential_frame
 from ...errors import CaseError
 from ...model.analyses import FrettingAnalysis
 from ..system.joint_wear import JointWear
@@ -43,6 +44,8 @@ class FrettingPath:
         Worn profiles of the wearing faces.
     areas : ndarray, shape (m,)
         Areas of the basis functions of the depths [m²].
+    frame : ndarray, shape (t, n, gdim)
+        Tangential directions at the contact points.
 
     Raises
     ------
@@ -59,20 +62,21 @@ class FrettingPath:
         history, contacts = self.loads.history, system.contacts
         self._path = LoadPath(history, settings.output_times)
         self.cycle_of_history = history.cycle
+        poles = np.array([system.load_directions[own.start] for own in contacts.ranges])
+        self.frame = tangential_frame(contacts, poles)
         with system.phases("condense elasticity"):
             self._contact = condense_tangential(
-                system.elastic, contacts, system.basis, self.loads.held
+                system.elastic, contacts, system.basis, self.loads.held, self.frame
             )
         self._require_support()
-        weighted = self._contact.weighted
-        self.areas = weighted.sum(axis=0)
+        weighted, self.areas = self._contact.weighted, self._contact.areas
         counts = [own.stop - own.start for own in function_ranges(contacts, weighted)]
         each = [interface.nominal_friction for interface in system.model.interfaces]
         self._friction = np.repeat(each, counts)
         wear = JointWear(system.model, contacts)
         self._laws = tuple(wear.laws_of(counts).values())
         self.profiles = tuple(worn_profiles(contacts, weighted, side) for side in system.laws)
-        self._reactions = weak(weighted, closure(contacts, self.loads.reactions))
+        self._reactions = weak(weighted, closure(contacts, self.loads.reactions, self.frame))
 
     def _require_support(self) -> None:
         """Reject free motions that together move no contact."""
@@ -87,9 +91,12 @@ class FrettingPath:
             )
 
     def reactions(self, state: StickSlipState) -> np.ndarray:
-        """Force along and across the load direction, and moment of each holder, (n_holders, 3)."""
+        """Forces along and across the load direction, and moment of each holder.
+
+        Shape (n_holders, 3), in space with two forces across it (n_holders, 4).
+        """
         found = self._reactions.T @ self._contact.stack(state.pressure, state.shear)
-        return found.reshape(-1, 3)
+        return found.reshape(len(self.loads.system.model.holders), -1)
 
     def duration(self, increment: Increment) -> float:
         """Duration of an increment [s]."""
@@ -97,7 +104,7 @@ class FrettingPath:
         return (segment.end - segment.start) / self._settings.increments
 
     def travel(self, state: StickSlipState) -> np.ndarray:
-        """Displacement of the first bodies along the faces, shape (n_interfaces,) [m]."""
+        """Displacement of the first bodies along the faces, see `FrictionalContact.travel`."""
         return self._contact.travel @ state.motion
 
     def increments(self, last: Increment | None = None) -> Iterator[Increment]:

@@ -1,110 +1,31 @@
-"""Rows and contact points of a state of stick and slip."""
+"""Rows of a state of stick and slip."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from ...contact.operators.tangential import forwards, tangents
-from ...results import ContactRow, CycleRow, FrictionInterface, HolderRow, LoadRow, StickRow
-from ..system.system import System
-from .held_loads import HeldLoads, across
-from .load_path import Increment
-
-_SLIDES = 1 - 1e-6  # fraction of the friction limit from which a point slips
-
-
-@dataclass(frozen=True)
-class FrettingState:
-    """State at the end of an increment, at the contact points of a system.
-
-    Attributes
-    ----------
-    system : System
-    increment : Increment
-    """
-
-    system: System
-    increment: Increment
-
-    @cached_property
-    def pressure(self) -> np.ndarray:
-        """Pressure, shape (n,) [Pa]."""
-        return self.system.basis @ self.increment.state.pressure
-
-    @cached_property
-    def shear(self) -> np.ndarray:
-        """Shear traction on the first bodies, shape (n,) [Pa]."""
-        return self.system.basis @ self.increment.state.shear[:, 0]
-
-    @cached_property
-    def sticking(self) -> np.ndarray:
-        """Mask of points with shear below the friction limit, shape (n,)."""
-        return np.abs(self.shear) < _SLIDES * self.system.friction * self.pressure
-
-    @cached_property
-    def depths(self) -> np.ndarray:
-        """Worn depths of the first and of the second faces, shape (2, n) [m]."""
-        system = self.system
-        both = np.zeros((2, len(system.weights)))
-        both[list(system.laws)] = (system.basis @ self.increment.state.worn.T).T
-        return both
-
-    @cached_property
-    def sense(self) -> np.ndarray:
-        """Signs of shear and slip along +x (+y on faces along y), shape (n,)."""
-        contacts = self.system.contacts
-        means = np.array([each.weights @ each.normals for each in contacts.each])
-        return contacts.per_point(forwards(tangents(means)[0]))
-
-    @cached_property
-    def forces(self) -> tuple[np.ndarray, np.ndarray]:
-        """Forces at the points, shape (n,) each [N].
-
-        On the second bodies along the load direction of the first; and on the first bodies across
-        it, along +x (+y where they are pressed along x).
-        """
-        system, normals = self.system, self.system.contacts.normals
-        traction = self.pressure[:, None] * normals - self.shear[:, None] * tangents(normals)[0]
-        along = system.load_directions
-        turned = tangents(along)[0]
-        press, pull = (np.einsum("ni,ni->n", traction, each) for each in (along, turned))
-        return system.weights * press, -forwards(turned) * system.weights * pull
-
-    @property
-    def friction(self) -> FrictionInterface:
-        """Stick and slip at the contact points."""
-        system, state = self.system, self.increment.state
-        points = system.contacts.on_body_1
-        return FrictionInterface(
-            x=points[:, 0],
-            y=points[:, 1],
-            s=system.contacts.position,
-            weight=system.weights,
-            pressure=self.pressure,
-            shear=self.sense * self.shear,
-            slip=self.sense * state.point_slip[:, 0],
-            dissipated=state.dissipated,
-            status=np.where(self.pressure > 0, np.where(self.sticking, 1, 2), 0),
-        )
-
-    def power(self, before: FrettingState, duration: float) -> np.ndarray:
-        """Friction power per area in the increment, shape (n,) [W/m²]; NaN without duration."""
-        slid = self.increment.state.point_slip - before.increment.state.point_slip
-        return -self.shear * slid[:, 0] / (duration or np.nan)
+from ...results import (
+    ContactRow,
+    CycleRow,
+    HolderRow,
+    LoadRow,
+    StickRow,
+    TangentialRow,
+)
+from .fretting_state import FrettingState
+from .held_loads import HeldLoads, across, axis_of
 
 
 def load_row(loads: HeldLoads, at: FrettingState) -> LoadRow:
     """Row of ``loads.csv``: of all contacts, and of one holder."""
     w, increment, state = at.system.weights, at.increment, at.increment.state
     own = loads.by_holder[loads.shown]
-    roles = {loads.motions[k].role: k for k in reversed(own)}
+    presses = [k for k in own if loads.motions[k].role == "press"]
+    slides = [k for k in own if loads.motions[k].driven == 0]
     press, slide = (
-        (0.0, 0.0) if k is None else (state.force[k], state.motion[k])
-        for k in map(roles.get, ("press", "slide"))
+        (state.force[k[0]], state.motion[k[0]]) if k else (0.0, 0.0) for k in (presses, slides)
     )
     volumes = at.depths @ w
     return LoadRow(
@@ -134,7 +55,7 @@ def contact_rows(
         ContactRow(
             time=at.increment.time,
             contact=number,
-            normal_force=float(at.forces[0][own].sum()),
+            normal_force=float(at.normal_forces[own].sum()),
             friction_power=float(w[own] @ power[own]),
             max_pressure=float(at.pressure[own].max()),
             contact_area=float(w[own][at.pressure[own] > 0].sum()),
@@ -154,7 +75,7 @@ def stick_rows(at: FrettingState) -> list[StickRow]:
         StickRow(
             time=at.increment.time,
             contact=number,
-            friction_force=float(at.forces[1][own].sum()),
+            friction_force=at.friction_force(own),
             stick_area=float(w[own][at.sticking[own]].sum()),
             dissipated=float(w[own] @ state.dissipated[own]),
             cycle=at.increment.segment.cycle,
@@ -164,11 +85,11 @@ def stick_rows(at: FrettingState) -> list[StickRow]:
 
 
 def holder_rows(loads: HeldLoads, at: FrettingState, reactions: np.ndarray) -> list[HolderRow]:
-    """Rows of ``holders.csv`` from the reactions of the holders, shape (n_holders, 3) [N, N m]."""
+    """Rows of ``holders.csv`` from the reactions of the holders, see `FrettingPath.reactions`."""
     rows = []
     motions = loads.of_holders(at.increment.state.motion)
     each = zip(loads.system.model.holders, motions, reactions, strict=True)
-    for number, (holder, motion, (press, pull, moment)) in enumerate(each, start=1):
+    for number, (holder, motion, (press, pull, *_, moment)) in enumerate(each, start=1):
         pivot = motion.at(np.array(holder.pivot))
         row = HolderRow(
             time=at.increment.time,
@@ -178,7 +99,30 @@ def holder_rows(loads: HeldLoads, at: FrettingState, reactions: np.ndarray) -> l
             tangential_force=float(pull),
             tangential_displacement=float(pivot @ across(holder)[1]),
             moment=float(moment),
-            rotation=float(motion.rotation[2]),
+            rotation=float(motion.rotation @ axis_of(holder)),
+        )
+        rows.append(row)
+    return rows
+
+
+def tangential_rows(
+    loads: HeldLoads, at: FrettingState, reactions: np.ndarray
+) -> list[TangentialRow]:
+    """Rows of ``tangential.csv`` of bodies in space; parameters as in `holder_rows`."""
+    motions = loads.of_holders(at.increment.state.motion)
+    each = zip(loads.system.model.holders, motions, reactions, strict=True)
+    rows = []
+    for number, (holder, motion, (_, force_x, force_y, torque)) in enumerate(each, start=1):
+        x, y, _ = motion.at(np.array(holder.pivot))
+        row = TangentialRow(
+            time=at.increment.time,
+            holder=number,
+            force_x=float(force_x),
+            force_y=float(force_y),
+            displacement_x=float(x),
+            displacement_y=float(y),
+            torque=float(torque),
+            twist=float(motion.rotation @ axis_of(holder)),
         )
         rows.append(row)
     return rows
@@ -222,4 +166,15 @@ def holder_summary(row: HolderRow) -> dict:
         "normal_force_N": row.normal_force,
         "tangential_force_N": row.tangential_force,
         "tangential_displacement_m": row.tangential_displacement,
+    }
+
+
+def tangential_summary(row: TangentialRow) -> dict:
+    """Numbers of the tangential loads of a pair in space for the summary."""
+    return {
+        "friction_force_N": float(np.hypot(row.force_x, row.force_y)),
+        "tangential_force_y_N": row.force_y,
+        "tangential_displacement_y_m": row.displacement_y,
+        "torque_Nm": row.torque,
+        "twist_rad": row.twist,
     }

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from ...contact.friction.stick_slip_state import Loads
-from ...contact.operators.tangential import HeldMotion
+from ...contact.operators.frictional_contact import HeldMotion
 from ...errors import CaseError
 from ...laws.motions import RigidMotion, combined, rotation, translation
-from ...laws.time_course import LoadHistories
+from ...laws.time_course import TANGENTIAL, LoadHistories
 from ...model.conditions import Holder
 from ..system.rigid_modes import applied
 from ..system.system import System
@@ -23,7 +24,39 @@ _PARALLEL = 1.0 - 1e-9
 def across(holder: Holder) -> tuple[str, np.ndarray]:
     """Name and direction of the motion under tangential loads: x; y if pressed along x."""
     along_x = abs(holder.load_direction[0]) > _PARALLEL
-    return ("y", np.array([0.0, 1.0])) if along_x else ("x", np.array([1.0, 0.0]))
+    name = "y" if along_x else "x"
+    return name, np.eye(len(holder.load_direction))["xy".index(name)]
+
+
+def axis_of(holder: Holder) -> np.ndarray:
+    """Axis of moments and rotations: z in a plane, in space against the load direction, (3,)."""
+    plane = len(holder.load_direction) == 2
+    return np.array([0.0, 0.0, 1.0]) if plane else -np.array(holder.load_direction)
+
+
+def tangential_motions(holder: Holder) -> dict[str, RigidMotion]:
+    """Motions under tangential loads by name, in the order of `time_course.TANGENTIAL`.
+
+    One in a plane; in space along x and y, and about the axis through the pivot against the load
+    direction.
+
+    Raises
+    ------
+    CaseError
+        If a holder in space is pressed along x or y.
+    """
+    if len(holder.load_direction) == 2:
+        name, direction = across(holder)
+        return {name: translation(direction)}
+    axis = axis_of(holder)
+    if np.abs(axis[:2]).max() > _PARALLEL:
+        which = f"holders.{holder.name}.direction" if holder.name else "geometry"
+        raise CaseError(
+            f"{which}: tangential loads in space act along x and y; the holder must not be pressed "
+            "along one of them"
+        )
+    turn = rotation(axis, np.array(holder.pivot))
+    return {"x": translation(np.eye(3)[0]), "y": translation(np.eye(3)[1]), "twist": turn}
 
 
 @dataclass(frozen=True)
@@ -36,28 +69,25 @@ class DrivenMotion:
     index : int
         Index of the holder.
     name : str
-        Name of the motion, see `Holder.free`.
+        Name of the motion, see `Holder.free` and `tangential_motions`.
     motion : RigidMotion
+    driven : int or None
+        Number in `TANGENTIAL` of the loads of the history that move it; None if there are none.
     """
 
     holder: Holder
     index: int
     name: str
     motion: RigidMotion
+    driven: int | None = None
 
     @property
     def role(self) -> str:
         """``"press"`` along the load, ``"slide"`` under tangential loads, else ``"other"``."""
-        if self.slides:
+        if self.driven is not None:
             return "slide"
         presses = self.name == "z" or self.holder.free == ("rotation",)
         return "press" if presses else "other"
-
-    @property
-    def slides(self) -> bool:
-        """True for the motion that tangential loads of a history move."""
-        history = self.holder.history
-        return history is not None and history.tangential and self.name == across(self.holder)[0]
 
     def held(self, is_pair: bool) -> HeldMotion:
         """Motion for the contact operators."""
@@ -69,8 +99,8 @@ class DrivenMotion:
         holder, history = self.holder, self.holder.history
         given: dict[str, float | None] = {}
         given |= {} if history is None else history.at(instant)
-        slid, pulled = (given.get(f"tangential_{kind}") for kind in ("displacement", "force"))
-        if self.slides and slid is not None:
+        slid = None if self.driven is None else given.get(TANGENTIAL[self.driven][1])
+        if slid is not None:
             return np.nan, slid
         if "force" not in given and "approach" not in given:
             given |= {"force": holder.force, "approach": holder.approach}
@@ -82,9 +112,18 @@ class DrivenMotion:
         moment = given.get("moment")
         turning = holder.moments if moment is None else (0.0, 0.0, moment)
         held = replace(holder, force=given.get("force"), moments=turning)
-        load = applied(held, self.motion)
-        pull = (pulled or 0.0) * across(holder)[1]
-        return load + float(pull @ self.motion.at(np.array(holder.point))), np.nan
+        return applied(held, self.motion) + self._pulled(given), np.nan
+
+    def _pulled(self, given: Mapping[str, float | None]) -> float:
+        """Generalised force of the tangential loads of a history on the motion."""
+        turn, point = 0.0, np.array(self.holder.point)
+        pull = np.zeros_like(point)
+        pairs = zip(TANGENTIAL, tangential_motions(self.holder).values(), strict=False)
+        for (key, _), motion in pairs:
+            amount = given.get(key) or 0.0
+            pull = pull + amount * motion.translation[: len(pull)]
+            turn += amount * float(motion.rotation @ self.motion.rotation)
+        return float(pull @ self.motion.at(point)) + turn
 
 
 @dataclass(frozen=True)
@@ -107,6 +146,10 @@ class HeldLoads:
         if not any(holder.history for holder in self.system.model.holders):
             which = "load.history" if self.system.model.is_pair else "holders.NAME.history"
             raise CaseError(f"{which}: missing; required in a fretting analysis")
+        for holder in self.system.model.holders:
+            only = () if holder.history is None else holder.history.in_space
+            if only and len(holder.load_direction) == 2:
+                raise CaseError(f"load history: {only[0]} requires a 3d model")
 
     @cached_property
     def history(self) -> LoadHistories:
@@ -120,12 +163,17 @@ class HeldLoads:
         system, found = self.system, list[DrivenMotion]()
         for index, holder in enumerate(system.model.holders):
             own = system.holder.rigid_modes[system.modes_of_holders[index]]
-            free = zip(holder.free, own, strict=True)
-            found += [DrivenMotion(holder, index, name, mode.motion) for name, mode in free]
-            name, direction = across(holder)
-            tangential = holder.history is not None and holder.history.tangential
-            if tangential and name not in holder.free:
-                found.append(DrivenMotion(holder, index, name, translation(direction)))
+            driven = _driven(holder)
+            found += [
+                DrivenMotion(holder, index, name, mode.motion, driven.get(name))
+                for name, mode in zip(holder.free, own, strict=True)
+            ]
+            moved = tangential_motions(holder) if driven else {}
+            found += [
+                DrivenMotion(holder, index, name, moved[name], number)
+                for name, number in driven.items()
+                if name not in holder.free
+            ]
         return tuple(found)
 
     @property
@@ -137,13 +185,12 @@ class HeldLoads:
     def reactions(self) -> tuple[HeldMotion, ...]:
         """Motions of each holder conjugate to its reactions.
 
-        Along and across its load direction, and about its pivot.
+        Along and across its load direction, and about its pivot; two directions across in space.
         """
         found: list[HeldMotion] = []
         for holder in self.system.model.holders:
-            turn = rotation((0.0, 0.0, 1.0), np.array(holder.pivot))
-            shifts = translation(holder.load_direction), translation(across(holder)[1])
-            found += [HeldMotion(motion, holder.bodies) for motion in (*shifts, turn)]
+            moved = _reacting(holder)
+            found += [HeldMotion(motion, holder.bodies) for motion in moved]
         return tuple(found)
 
     @cached_property
@@ -171,3 +218,23 @@ class HeldLoads:
         return tuple(
             np.flatnonzero(owners == index) for index in range(len(self.system.model.holders))
         )
+
+
+def _driven(holder: Holder) -> dict[str, int]:
+    """Names of the motions that a history moves, with their numbers in `TANGENTIAL`."""
+    history = holder.history
+    if history is None or not history.tangential:
+        return {}
+    return {
+        name: number
+        for number, name in enumerate(tangential_motions(holder))
+        if history.drives(number)
+    }
+
+
+def _reacting(holder: Holder) -> tuple[RigidMotion, ...]:
+    """Motions conjugate to the reactions of a holder."""
+    pivot, dim = np.array(holder.pivot), len(holder.pivot)
+    along = [across(holder)[1]] if dim == 2 else np.eye(3)[:2]
+    turn = rotation(axis_of(holder), pivot)
+    return translation(holder.load_direction), *map(translation, along), turn

@@ -1,3 +1,5 @@
 """Translation of a case file into a model and the settings of its analysis."""
 
-from .analysis import analysis_of, model_of, run
+from .accurate_mesh import with_accurate_mesh
+from .analysis import analysis_of, model_of
+from .run import run

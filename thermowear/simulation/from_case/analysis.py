@@ -16,10 +16,6 @@ from ...model.analyses import (
     TransientAnalysis,
 )
 from ...model.model import Model
-from ...results import Result
-from ...timer import Phases
-from ..analyses import run as analyses
-from ..runtime.observer import Observer, Saved
 from .assembly import assembly_of
 from .model import attributes, pair_of
 
@@ -27,17 +23,6 @@ from .model import attributes, pair_of
 def model_of(case: AnyCase) -> Model:
     """Model of a validated case."""
     return assembly_of(case) if isinstance(case, AssemblyCase) else pair_of(case)
-
-
-def run(
-    case: AnyCase,
-    comm=None,
-    observer: Observer | None = None,
-    phases: Phases | None = None,
-    saved: Saved | None = None,
-) -> Result:
-    """Compute a case; see `simulation.analyses.run`. Every rank calls."""
-    return analyses.run(model_of(case), analysis_of(case), comm, observer, phases, saved)
 
 
 def analysis_of(case: AnyCase) -> Analysis:

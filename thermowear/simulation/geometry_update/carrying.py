@@ -56,7 +56,7 @@ def carried_wear(before: System, after: System, worn: np.ndarray) -> tuple[np.nd
             has = keeps @ after.weights[new] + after.lost[index, side]
             if had > 0.0:
                 row *= 1.0 + (had - has) / (row @ after.weights[new])
-                error = max(error, abs(had - has) / had)
+                error = max(error, float(abs(had - has) / had))
     return rows, error
 
 

@@ -8,13 +8,10 @@ import numpy as np
 
 from ...balances import relative, require
 from ...bulk.mesh_motion import extended
-from ...contact.faces.face import Surface
 from ...contact.search.refinement import Rule
-from ...contact.wear.worn_face import nodes_of
 from ...errors import CaseError, ComputationError
-from ...geometry.mesh.mixed import AnyMesh, MixedMesh, block_of, exchanged, placed, rows_of
+from ...geometry.mesh.mixed import AnyMesh, MixedMesh, block_of, placed, rows_of
 from ...geometry.mesh.tagged import TaggedMesh
-from ...geometry.moving.moved import nodes_at
 from ...geometry.moving.new_face import NewFace
 from ...parallel import on_root
 from ...serialise import serialisable
@@ -39,7 +36,8 @@ from .moving_faces import (
     parts_behind,
     worst_cell,
 )
-from .remesh import FLOOR, Renewed, carrying_error, improved, on_new_faces
+from .refill import Kept, on_kept_faces, refilled
+from .remesh import FLOOR, Renewed, carrying_error, on_new_faces, redivided
 
 serialisable(WornGeometry)
 serialisable(WornContact)
@@ -148,13 +146,16 @@ def _moved(
     offsets = {key: face.offsets(depth[moving.rows[key]]) for key, face in moving.faces.items()}
     volumes = {key: depth[own] @ weights[own[1]] for key, own in moving.rows.items()}
     mesh, lost = _followed(system, before, moving, offsets, volumes)
-    mesh, quality, renewed = on_root(system.comm, lambda: _remeshed(system, before, mesh, moving))
+    mesh, quality, renewed, kept = on_root(
+        system.comm, lambda: _remeshed(system, before, mesh, moving)
+    )
     least = _least_quality(system, before)
     if not quality >= least:  # NaN for degenerate cells
         raise ComputationError(
             f"geometry update: cells of the worn bodies become too slanted (scaled Jacobian "
             f"{quality:.2g}, at least {least:.2g}); use fewer or more even elements along the "
-            'contact (mesh.elements, mesh.grading), or wear.update = "never"'
+            "contact and the sides beside it (mesh.elements, mesh.grading, or the mesh file), or "
+            'wear.update = "never"'
         )
     taken, missing = np.zeros_like(depth), 0.0
     for key, face in moving.faces.items():
@@ -189,7 +190,9 @@ def _moved(
         quality=min(before.quality, quality),
         volume_error=error,
     )
-    return (on_new_faces(worn, system, renewed), True) if renewed else (worn, False)
+    if kept:
+        worn = on_kept_faces(worn, system, kept)
+    return on_new_faces(worn, system, renewed) if renewed else worn, bool(renewed or kept)
 
 
 def _motions(system: System, state: InterfaceState) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
@@ -272,26 +275,15 @@ def _followed(
 
 def _remeshed(
     system: System, worn: WornGeometry, mesh: AnyMesh, moving: MovingFaces
-) -> tuple[AnyMesh, float, Renewed]:
-    """Mesh with distorted bodies of a section remeshed, its quality, and the new faces.
+) -> tuple[AnyMesh, float, Renewed, Kept]:
+    """Mesh with distorted bodies remeshed, its quality, and the contact faces of these bodies.
 
-    The quality is the smallest scaled Jacobian. Bodies with several contact faces are not remeshed,
-    as that would divide the others, too.
+    The quality is the smallest scaled Jacobian.
     """
     renewed: Renewed = {}
-    moved, all_faces = mesh, [k for one in system.contacts.bodies for k in one]
-    for key in moving.faces:
-        index, side = key
-        parts, body = parts_behind(system, key), system.contacts.bodies[index][side]
-        face = system.contacts.each[index].sides[side].face
-        if isinstance(face, Surface) or all_faces.count(body) > 1:
-            continue
-        before, after, block = (block_of(each, *parts) for each in (worn.mesh, moved, mesh))
-        places = after.points[nodes_at(before, parts, nodes_of(face))]
-        nodes = nodes_at(block, parts, places)  # remeshing of another body renumbers them
-        sizes = worn.contacts[index].sizes[side]
-        wanted = sizes, system.elastic.kinematics.area_factor, worn.best[body]
-        improved_block, new = improved(block, parts, nodes, *wanted)
-        mesh = exchanged(mesh, block, improved_block)
-        renewed |= {} if new is None else {key: new}
-    return mesh, worst_cell(mesh), renewed
+    kept: Kept = {}
+    if system.contacts.in_space:
+        mesh, kept = refilled(system, worn, mesh, moving)
+    else:
+        mesh, renewed = redivided(system, worn, mesh, moving)
+    return mesh, worst_cell(mesh), renewed, kept

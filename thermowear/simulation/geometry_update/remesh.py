@@ -1,9 +1,11 @@
-"""Remeshing of the bodies of sections: criterion and transfer to the new faces."""
+"""Remeshing of bodies: criterion, and in sections the transfer to the new faces."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 import scipy
@@ -12,15 +14,18 @@ from ...bulk.mesh_motion import serial_extension
 from ...contact.faces.face import Face
 from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import PairedFace, Pairing
+from ...contact.wear.worn_face import nodes_of
 from ...errors import ComputationError
-from ...geometry.mesh.mixed import block_of
+from ...geometry.mesh.mixed import AnyMesh, block_of, exchanged
 from ...geometry.mesh.tagged import TaggedMesh, quality
+from ...geometry.moving.moved import nodes_at
 from ...geometry.moving.new_face import NewFace
 from ...geometry.moving.remeshed import meshed_anew
 from ..system.system import System
 from ..system.worn_geometry import WornContact, WornGeometry, along
-from .moving_faces import FaceKey
+from .moving_faces import FaceKey, MovingFaces, parts_behind
 
+New = TypeVar("New")
 Renewed = dict[FaceKey, NewFace]
 """Redivided faces."""
 FLOOR = 0.1
@@ -34,15 +39,21 @@ _WORSE = 0.75
 def improved(
     mesh: TaggedMesh,
     parts: tuple[str, ...],
-    face: np.ndarray,
-    sizes: np.ndarray,
-    factor: Callable[[np.ndarray], np.ndarray],
     best: float,
-) -> tuple[TaggedMesh, NewFace | None]:
+    meshed: Callable[[], tuple[TaggedMesh, New]],
+) -> tuple[TaggedMesh, New | None]:
     """Remesh a body if its cells are distorted and the new ones are better.
 
-    Parameters are those of `geometry.moving.remeshed.meshed_anew`, and the smallest scaled Jacobian
-    of the body's first mesh.
+    Parameters
+    ----------
+    mesh : TaggedMesh
+        Mesh of the body, with other ones.
+    parts : tuple of str
+        Names of the body's parts.
+    best : float
+        Smallest scaled Jacobian of the body's first mesh.
+    meshed : callable
+        Returns the mesh with the remeshed body, and what else is known of it.
 
     Raises
     ------
@@ -53,12 +64,47 @@ def improved(
     if worst >= max(FLOOR, min(_SOFT, _WORSE * best)):
         return mesh, None
     try:
-        anew, divided = meshed_anew(mesh, parts, face, sizes, factor, serial_extension)
+        anew, new = meshed()
     except ComputationError as reason:
         if worst >= FLOOR:
             return mesh, None
         raise ComputationError(f"geometry update: {reason}") from None
-    return (anew, divided) if quality(anew, parts) > worst else (mesh, None)
+    return (anew, new) if quality(anew, parts) > worst else (mesh, None)
+
+
+def redivided(
+    system: System, worn: WornGeometry, mesh: AnyMesh, moving: MovingFaces
+) -> tuple[AnyMesh, Renewed]:
+    """Mesh with distorted bodies of sections remeshed, and their new faces.
+
+    Bodies with several contact faces are not remeshed, as that would divide the others, too.
+
+    Parameters
+    ----------
+    system : System
+    worn : WornGeometry
+        Before the mesh motion.
+    mesh : TaggedMesh or MixedMesh
+        After it.
+    moving : MovingFaces
+    """
+    renewed: Renewed = {}
+    moved, all_faces = mesh, [k for one in system.contacts.bodies for k in one]
+    for key in moving.faces:
+        index, side = key
+        parts, body = parts_behind(system, key), system.contacts.bodies[index][side]
+        if all_faces.count(body) > 1:
+            continue
+        face = system.contacts.each[index].sides[side].face
+        before, after, block = (block_of(each, *parts) for each in (worn.mesh, moved, mesh))
+        places = after.points[nodes_at(before, parts, nodes_of(face))]
+        nodes = nodes_at(block, parts, places)  # remeshing of another body renumbers them
+        wanted = worn.contacts[index].sizes[side], system.elastic.kinematics.area_factor
+        anew = partial(meshed_anew, block, parts, nodes, *wanted, serial_extension)
+        improved_block, new = improved(block, parts, worn.best[body], anew)
+        mesh = exchanged(mesh, block, improved_block)
+        renewed |= {} if new is None else {key: new}
+    return mesh, renewed
 
 
 def on_new_faces(worn: WornGeometry, system: System, faces: Renewed) -> WornGeometry:
@@ -94,16 +140,18 @@ def _on_new_face(contact: WornContact, pairing: Pairing, index: int, new: NewFac
     directions = carried / np.linalg.norm(carried, axis=1, keepdims=True)
     return replace(
         contact,
-        directions=_exchanged(contact.directions, index, directions),
-        held=_exchanged(contact.held, index, held),
-        sizes=_exchanged(contact.sizes, index, new.sizes),
+        directions=exchanged_side(contact.directions, index, directions),
+        held=exchanged_side(contact.held, index, held),
+        sizes=exchanged_side(contact.sizes, index, new.sizes),
         at=at,
         depth=depth,
         renewed=contact.renewed | {index: new},
     )
 
 
-def _exchanged(pair: tuple[np.ndarray, ...], index: int, new: np.ndarray) -> tuple[np.ndarray, ...]:
+def exchanged_side(
+    pair: tuple[np.ndarray, ...], index: int, new: np.ndarray
+) -> tuple[np.ndarray, ...]:
     """Values of both sides with new ones of one of them."""
     return tuple(new if side == index else values for side, values in enumerate(pair))
 
@@ -111,7 +159,8 @@ def _exchanged(pair: tuple[np.ndarray, ...], index: int, new: np.ndarray) -> tup
 def carrying_error(worn: WornGeometry, contacts: Contacts) -> float:
     """Round-trip error of depths carried over to new pairings, relative to the largest."""
     each = zip(worn.contacts, contacts.each, strict=True)
-    return max(_carrying_error(one, pairing) for one, pairing in each if one.renewed)
+    errors = (_carrying_error(one, pairing) for one, pairing in each if one.renewed)
+    return max(errors, default=0.0)
 
 
 def _carrying_error(worn: WornContact, pairing: Pairing) -> float:

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...balances import require
-from ...contact.operators.tangential import tangents
 from ...contact.operators.traces import vector_trace
 from ...parallel import sum_over_ranks
 from ..heat.friction_heat import TemperatureField, friction_heat
@@ -66,9 +65,8 @@ def body_state(system: System, contact: ContactState) -> BodyState:
     hottest, strained = float("nan"), np.zeros(len(system.elastic.fixed))
     loads = system.traction @ (system.weights * pressure)
     if shear is not None:
-        contacts = system.contacts
-        along = vector_trace(system.elastic.spaces, contacts, -tangents(contacts.normals)[0])
-        loads = loads + along @ (system.weights * shear)
+        along = vector_trace(system.elastic.spaces, system.contacts, -shear)
+        loads = loads + along @ system.weights
     if system.dead_load is not None:
         loads = loads + system.dead_load
     if temperatures is not None and system.thermal is not None:

@@ -13,7 +13,6 @@ import numpy as np
 from ...balances import ALLOWED, relative
 from ...compat import coordinate_element
 from ...contact.operators.rigid_motion import RigidMode
-from ...contact.operators.tangential import tangents
 from ...laws.motions import RigidMotion, rotation, translation
 from ...parallel import sum_over_ranks
 from ..heat.friction_heat import TemperatureField
@@ -34,8 +33,8 @@ class ContactState:
     conditions : InterfaceConditions
     temperatures : TemperatureField or None
         Temperatures; None without heat.
-    shear : ndarray or None, shape (n,)
-        Stick-slip traction on body 1, see `contact.operators.tangential` [Pa].
+    shear : ndarray or None, shape (n, gdim)
+        Shear traction of stick-slip on the first bodies [Pa].
     """
 
     pressure: np.ndarray
@@ -48,7 +47,7 @@ class ContactState:
         traction = self.pressure[:, None] * system.traction_direction
         if self.shear is None:
             return traction
-        return traction - self.shear[:, None] * tangents(system.contacts.normals)[0]
+        return traction - self.shear
 
 
 @dataclass(frozen=True)

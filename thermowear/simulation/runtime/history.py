@@ -23,6 +23,7 @@ from ...results import (
     LoadRow,
     Result,
     StickRow,
+    TangentialRow,
     TrackHistory,
 )
 from ..results.recording import Snapshot, sample
@@ -227,6 +228,7 @@ class AnalysisHistory(ABC, Generic[State]):
                 frictions,
                 self.table(StickRow),
                 self.table(HolderRow),
+                self.table(TangentialRow),
             )
         if end.track is not None:
             track = TrackHistory(end.track, tracks)

@@ -20,12 +20,15 @@ from ...results import (
     InterfaceFields,
     LoadRow,
     StickRow,
+    TangentialRow,
     WornTrack,
 )
 from ...serialise import serialisable
 from ..system.system import System
 
-AnyRow = HistoryRow | HeatRow | ContactRow | LoadRow | CycleRow | StickRow | HolderRow
+AnyRow = (
+    HistoryRow | HeatRow | ContactRow | LoadRow | CycleRow | StickRow | HolderRow | TangentialRow
+)
 
 _ROUNDING = 1e-9  # relative to the contact's length
 

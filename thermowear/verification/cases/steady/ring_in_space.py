@@ -190,16 +190,21 @@ def _merged_on_axis(body: MeshedBody, counts: tuple[int, int]) -> MeshedBody:
 def compared_steady(found: Result, share: float) -> Iterator[Check]:
     """Steady state, compared with the axisymmetric one at every point."""
     flat, i = run_starter(STEADY), found.interface
-    heights, extent = i.shape - _along(flat, "shape", i), flat.summary["shape_range_m"]
+    heights, extent = i.shape - along_radius(flat, "shape", i), flat.summary["shape_range_m"]
     heights -= np.average(heights, weights=i.weight)
     where, part = "at the point of largest deviation", _part(share)
     at = int(np.abs(heights).argmax())
-    known = _along(flat, "shape", i)[at]
+    known = along_radius(flat, "shape", i)[at]
     quantity = f"worn shape, hot, {where}, {part} [m]"
     yield compare(quantity, known + heights[at], known, 1e-2, AXISYMMETRIC, extent)
     for quantity, values, exact, allowed in (
-        ("temperature rise", i.temperature_1, _along(flat, "temperature_1", i), 5e-3),
-        ("temperature rise of the plate", i.temperature_2, _along(flat, "temperature_2", i), 5e-3),
+        ("temperature rise", i.temperature_1, along_radius(flat, "temperature_1", i), 5e-3),
+        (
+            "temperature rise of the plate",
+            i.temperature_2,
+            along_radius(flat, "temperature_2", i),
+            5e-3,
+        ),
     ):
         rises = values - AMBIENT, exact - AMBIENT
         yield _worst(f"{quantity}, hot, {where}, {part} [K]", *rises, allowed, AXISYMMETRIC)
@@ -226,10 +231,10 @@ def compared_running_in(found: Result, flat: Result, share: float, note: str) ->
         for quantity, name in (("pressure [Pa]", "pressure"), ("wear depth [m]", "wear_1")):
             what, _, unit = quantity.rpartition(" ")
             quantity = f"{what} at {time:g} s at the point of largest deviation{end} {unit}"
-            values = getattr(i, name)[chosen], _along(exact, name, i)[chosen]
+            values = getattr(i, name)[chosen], along_radius(exact, name, i)[chosen]
             yield _worst(quantity, *values, 1e-2, AXISYMMETRIC)
         if np.isfinite(i.temperature_1).all():
-            rises = i.temperature_1 - AMBIENT, _along(exact, "temperature_1", i) - AMBIENT
+            rises = i.temperature_1 - AMBIENT, along_radius(exact, "temperature_1", i) - AMBIENT
             quantity = f"temperature rise at {time:g} s at the point of largest deviation{end} [K]"
             yield _worst(quantity, *rises, 5e-3, AXISYMMETRIC)
         lost = share * (known[time].weight @ known[time].wear_1)
@@ -245,7 +250,7 @@ def _radius(interface: InterfaceFields) -> np.ndarray:
     return np.hypot(interface.x, interface.y)
 
 
-def _along(flat: Result, name: str, interface: InterfaceFields) -> np.ndarray:
+def along_radius(flat: Result, name: str, interface: InterfaceFields) -> np.ndarray:
     """Values of an axisymmetric run at the radii of points in space."""
     return along(flat.interface, _radius(interface), getattr(flat.interface, name))
 

@@ -1,0 +1,1 @@
+"""Bodies drawn in CAD (STEP, BREP): their faces, the faces that touch, and their mesh by gmsh."""

@@ -1,0 +1,186 @@
+"""Element sizes of CAD bodies: finer towards contact faces and their edges."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from .request import CadError
+from .solids import CadBody, CadFace
+
+GROWTH = 0.35
+"""Increase of the element size per distance from the contact."""
+MOST_TETRAHEDRA = 1_000_000
+"""Largest number of tetrahedra of all bodies."""
+_PER_CUBE = 8.0
+"""Number of tetrahedra in a cube of their size."""
+_PER_TURN = 12
+"""Least number of elements round a circle."""
+_LEAST = 0.3
+"""Smallest element size relative to that at the edges of the contact."""
+_PER_WIDTH = 1.5
+"""Largest element size at a face relative to its width."""
+_SPACING = 0.7
+"""Distance of the points from which distances are measured, relative to the size there."""
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """Faces of a contact towards which the meshes of its two bodies become finer.
+
+    Attributes
+    ----------
+    faces : tuple of CadFace
+        Those of the smaller side.
+    bodies : tuple of CadBody
+    """
+
+    faces: tuple[CadFace, ...]
+    bodies: tuple[CadBody, CadBody]
+
+
+def refinement(
+    faces: tuple[Sequence[CadFace], Sequence[CadFace]], bodies: tuple[CadBody, CadBody]
+) -> Refinement:
+    """Refinement of a contact, at the side with the lesser area."""
+    areas = [sum(face.area for face in of_body) for of_body in faces]
+    return Refinement(tuple(faces[int(np.argmin(areas))]), bodies)
+
+
+def set_sizes(gmsh, bodies: Sequence[CadBody], contacts: Sequence[Refinement]) -> None:
+    """Set the field of element sizes.
+
+    Raises
+    ------
+    CadError
+        If there were too many elements.
+    """
+    fields, limits = gmsh.model.mesh.field, []
+    least, curves = [np.inf], [_edges(gmsh, contact) for contact in contacts]
+    _check_number(gmsh, bodies, contacts, curves)
+    for contact, edges in zip(contacts, curves, strict=True):
+        faces = [face.tag for face in contact.faces]
+        for body in contact.bodies:
+            tags = [solid.tag for solid in body.solids]
+            size, inside, edge = body.element_sizes
+            own = [
+                _towards(fields, "SurfacesList", faces, inside, size, _extent(contact.faces)),
+                _towards(fields, "CurvesList", edges, edge, size, _longest(gmsh, edges)),
+            ]
+            limits += [_within(fields, field, tags, _boundary(gmsh, tags)) for field in own]
+            least.append(edge)
+    for body in bodies:
+        limits += _at_narrow_faces(gmsh, body)
+        limits.append(fields.add("Constant"))
+        fields.setNumber(limits[-1], "VIn", body.element_sizes[0])
+        fields.setNumbers(limits[-1], "VolumesList", [solid.tag for solid in body.solids])
+        least.append(body.element_sizes[0])
+    smallest = fields.add("Min")
+    fields.setNumbers(smallest, "FieldsList", limits)
+    fields.setAsBackgroundMesh(smallest)
+    settings = {
+        "MeshSizeMin": _LEAST * min(least),
+        "MeshSizeMax": max(body.element_sizes[0] for body in bodies),
+        "MeshSizeFromPoints": 0,
+        "MeshSizeExtendFromBoundary": 0,
+        "MeshSizeFromCurvature": _PER_TURN,
+        "Algorithm3D": 1,
+        "Optimize": 1,
+    }
+    for name, value in settings.items():
+        gmsh.option.setNumber(f"Mesh.{name}", value)
+
+
+def _at_narrow_faces(gmsh, body: CadBody) -> list[int]:
+    """Fields that make elements smaller at faces narrower than they would be.
+
+    Elements that are much longer than a face is wide have bad cells behind them. Faces of similar
+    widths have a field in common.
+    """
+    fields, tags = gmsh.model.mesh.field, [solid.tag for solid in body.solids]
+    size, groups = body.element_sizes[0], dict[int, list[CadFace]]()
+    for face in body.faces:
+        edges = gmsh.model.getBoundary([(2, face.tag)], combined=False, oriented=False)
+        around = sum(gmsh.model.occ.getMass(1, tag) for _, tag in edges)
+        near = _PER_WIDTH * 2 * face.area / around
+        if near < size:
+            groups.setdefault(math.floor(2 * math.log2(near / size)), []).append(face)
+    result = []
+    for step, faces in groups.items():
+        near = size * 2 ** (step / 2)
+        of_faces = [face.tag for face in faces]
+        field = _towards(fields, "SurfacesList", of_faces, near, size, _extent(faces))
+        result.append(_within(fields, field, tags, _boundary(gmsh, tags)))
+    return result
+
+
+def _towards(fields, key: str, entities: list[int], near: float, far: float, extent: float) -> int:
+    """Field that grows with the distance from faces or curves [mm]."""
+    away = fields.add("Distance")
+    fields.setNumbers(away, key, entities)
+    fields.setNumber(away, "Sampling", max(20, math.ceil(extent / (_SPACING * near))))
+    result = fields.add("Threshold")
+    settings = {
+        "InField": away,
+        "SizeMin": near,
+        "SizeMax": far,
+        "DistMin": near / 2,
+        "DistMax": near / 2 + max(far - near, 1e-9 * far) / GROWTH,
+    }
+    for name, value in settings.items():
+        fields.setNumber(result, name, value)
+    return result
+
+
+def _within(fields, field: int, solids: list[int], faces: list[int]) -> int:
+    """Field of one body alone."""
+    result = fields.add("Restrict")
+    fields.setNumber(result, "InField", field)
+    fields.setNumbers(result, "VolumesList", solids)
+    fields.setNumbers(result, "SurfacesList", faces)
+    return result
+
+
+def _boundary(gmsh, solids: list[int]) -> list[int]:
+    pairs = gmsh.model.getBoundary([(3, tag) for tag in solids], oriented=False)
+    return [tag for _, tag in pairs]
+
+
+def _edges(gmsh, contact: Refinement) -> list[int]:
+    """Curves round the faces of a contact, those between two of them left out."""
+    faces = [(2, face.tag) for face in contact.faces]
+    return [tag for _, tag in gmsh.model.getBoundary(faces, combined=True, oriented=False)]
+
+
+def _extent(faces: Sequence[CadFace]) -> float:
+    return max(float(np.linalg.norm(face.box[1] - face.box[0])) for face in faces)
+
+
+def _longest(gmsh, curves: list[int]) -> float:
+    return max((gmsh.model.occ.getMass(1, tag) for tag in curves), default=0.0)
+
+
+def _check_number(
+    gmsh, bodies: Sequence[CadBody], contacts: Sequence[Refinement], curves: list[list[int]]
+) -> None:
+    """Reject sizes that lead to too many elements, estimated from volumes, areas and lengths."""
+    occ, count = gmsh.model.occ, 0.0
+    for body in bodies:
+        volume = sum(occ.getMass(3, solid.tag) for solid in body.solids)
+        count += volume / body.element_sizes[0] ** 3
+    for contact, edges in zip(contacts, curves, strict=True):
+        area = sum(face.area for face in contact.faces)
+        length = sum(occ.getMass(1, tag) for tag in edges)
+        for body in contact.bodies:
+            _, inside, edge = body.element_sizes
+            count += area / (2 * GROWTH * inside**2)
+            count += length * math.pi / 4 * (1 / edge - 1 / inside) / GROWTH**2
+    if _PER_CUBE * count > MOST_TETRAHEDRA:
+        raise CadError(
+            f"mesh.size: the sizes lead to about {_PER_CUBE * count:.2g} tetrahedra; at most "
+            f"{MOST_TETRAHEDRA:.2g} can be made: increase mesh.size, mesh.contact_size or "
+            "mesh.grading"
+        )

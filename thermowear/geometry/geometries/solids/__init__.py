@@ -1,0 +1,1 @@
+"""Geometries of bodies in space that begin as CAD files."""

@@ -31,6 +31,12 @@ BAD = [
         "'reciprocating' is not supported in 3d",
     ),
     Bad(
+        "across the sliding",
+        {"contact.transverse_friction": 0.1},
+        "contact.transverse_friction",
+        "resists slip in any direction",
+    ),
+    Bad(
         "in time",
         {"analysis": {"type": "transient", "end_time": "1 s"}},
         f"{HISTORY}.tangential_force",
@@ -45,6 +51,17 @@ def test_what_is_refused(bad):
     lines = faults(bad.changes, BALL)
     found = [line for line in lines if line.startswith(f"{bad.path}: ")]
     assert any(bad.text in line for line in found), lines
+
+
+def test_friction_across_the_sliding_of_several_bodies():
+    """requirement: a table by contact is refused as that of a pair; sliding bodies have it."""
+    across = {"contacts.upper": {"between": ["upper_face", "DISK_TOP"], "transverse_friction": 0.1}}
+    case = tw.load(tables("two-pads-3d", across))
+    assert case.contacts["upper"].transverse_friction == 0.1
+    fretting = {"analysis": {"type": "fretting"}, "heat": None, "motions": None}
+    lines = faults(across | fretting, "two-pads-3d")
+    (line,) = [line for line in lines if line.startswith("contacts.upper.transverse_friction: ")]
+    assert "resists slip in any direction" in line
 
 
 @pytest.mark.parametrize(

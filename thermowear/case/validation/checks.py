@@ -12,6 +12,7 @@ from ..tables.analyses import Transient
 from ..tables.schema import Case
 from ..values.section import Fault
 from . import analyses, conditions, materials
+from .cyclic_assembly import NO_DIRECTION
 from .layer_wear import layer_wear
 from .mesh_sizes import mesh_sizes
 from .part_wear import note_default_per, part_wear
@@ -154,8 +155,8 @@ def _contact(case: Case) -> Iterator[Fault]:
 def _in_space(case: Case) -> Iterator[Fault]:
     if case.model != "3d":
         return
-    if case.contact.transverse_friction > 0:
-        yield "contact.transverse_friction", "not supported in 3d models"
+    if case.contact.transverse_friction > 0 and case.analysis.type == "fretting":
+        yield "contact.transverse_friction", NO_DIRECTION
     elif case.contact.pressure_degree == "lobatto":
         yield "contact.pressure_degree", "not supported in 3d models"
     if case.analysis.type == "reciprocating":

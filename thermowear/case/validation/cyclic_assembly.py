@@ -18,6 +18,10 @@ _CONFLICTS = {
     "moment": ("moments",),
 }
 """Constant loads that a load of a history takes the place of."""
+NO_DIRECTION = (
+    "is not supported in a fretting analysis in space: its friction resists slip in any direction"
+)
+"""Refusal of a coefficient across the direction of sliding."""
 
 
 def unsupported(case: AssemblyCase) -> Iterator[Fault]:
@@ -33,6 +37,9 @@ def unsupported(case: AssemblyCase) -> Iterator[Fault]:
         for key in ("friction_history", "fluid_pressure"):
             if getattr(contact, key) is not None:
                 yield f"{path}.{key}", refused
+        in_space = case.model == "3d" and isinstance(case.analysis, Fretting)
+        if in_space and contact.transverse_friction > 0:
+            yield f"{path}.transverse_friction", NO_DIRECTION
     for name, holder in case.holders.items():
         if holder.reaction is not None:
             yield f"holders.{name}.reaction", refused

@@ -161,7 +161,7 @@ class Sliding:
         Unit sliding direction e of body 1, components in the section.
     across : ndarray, shape (n, gdim)
         Unit tangent e_2 across the sliding, along which the load pushes body 1 down the face; zero
-        where the face is level in that direction.
+        where the face is level in that direction, and where nothing slides.
     """
 
     speed: np.ndarray
@@ -214,6 +214,7 @@ def sliding(
     along = _unit(_tangential(velocity, n), float(speed.max(initial=0.0)))
     down = _tangential(np.broadcast_to(_spatial(np.array([load_direction])), n.shape), n)
     down = down - np.einsum("ni,ni->n", down, along)[:, None] * along
+    down[speed == 0.0] = 0.0
     return Sliding(speed, along[:, :gdim], _unit(down, 1.0)[:, :gdim])
 
 

@@ -262,9 +262,10 @@ def _guide_reactions(
 
     The traction on the second bodies has the shape (n, gdim) [Pa].
 
-    For the whole body: the forces between the halves of a symmetric section cancel.
+    For the whole body: the forces between the parts of a symmetric body cancel.
     """
     model, reactions = system.model, {}
+    cancelling = _cancelling(model, holder)
     for name, motion in guides(model.kinematics, holder).items():
         if name not in holder.free:
             mode, load = RigidMode(motion, load=0.0, bodies=holder.bodies), 0.0
@@ -273,6 +274,13 @@ def _guide_reactions(
             response = hold(system.contacts, traction, [mode]).force_response
             dead = system.dead_resultant(motion)[list(holder.bodies)].sum()
             reaction = float(system.weights @ response[:, 0]) - load - float(dead)
-            cancels = bool(model.symmetry) and name != "z"
-            reactions[_GUIDES[name]] = 0.0 if cancels else reaction
+            reactions[_GUIDES[name]] = 0.0 if name in cancelling else reaction
     return reactions
+
+
+def _cancelling(model: Model, holder: Holder) -> tuple[str, ...]:
+    """Guided motions whose reactions cancel in a body cut by planes of symmetry x = const."""
+    if not model.symmetry:
+        return ()
+    quarter = any(model.bodies[index].rollers for index in holder.bodies)
+    return ("x", "rotation", "rotation-y", *(("y", "rotation-x") if quarter else ()))

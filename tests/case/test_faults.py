@@ -640,7 +640,7 @@ TO_AND_FRO = [
             "analysis": {"type": "reciprocating", "cycles": 1},
         },
         "model",
-        "needs a plane model with sliding along x",
+        "needs a plane or 3d model with sliding along x",
         RUNNING_IN,
     ),
     Bad(

@@ -25,12 +25,6 @@ BAD = [
     Bad("moment", {f"{HISTORY}.moment": ["0 N m"] * 4}, f"{HISTORY}.moment", "several bodies"),
     Bad("holder", {"holder.free": ["z", "x"]}, "holder", "load.history prescribes its motion"),
     Bad(
-        "to and fro",
-        {"analysis": {"type": "reciprocating", "end_time": "1 s"}},
-        "analysis.type",
-        "'reciprocating' is not supported in 3d",
-    ),
-    Bad(
         "across the sliding",
         {"contact.transverse_friction": 0.1},
         "contact.transverse_friction",

@@ -22,7 +22,7 @@ PICTURES = {
     "profile": "Worn shape.",
     "wear": "Pressure and wear depth along the contact at the output times and at the end.",
     "coating": "Thickness left of the coatings at the output times and at the end.",
-    "track": "Wear depths of both bodies along x, body 1 in the middle of its stroke.",
+    "track": "Wear depths of both bodies, body 1 in the middle of its stroke.",
     "history": "Largest pressure and worn volume over time.",
     "heat": "Surface temperatures of both bodies, friction power and largest pressure over time.",
     "friction": "Shear traction with its Coulomb limits, and slip, at the output times; in space "

@@ -128,6 +128,9 @@ class WornTrack:
     """
 
     x: np.ndarray = as_in(InterfaceFields)
+    y: np.ndarray = column("y", "m", "mm", "in space", optional=True)
+    z: np.ndarray = column("z", "m", "mm", "in space", optional=True)
+    weight: np.ndarray = column("area weight", "m²", "mm²", "in space", optional=True)
     wear_2: np.ndarray = as_in(InterfaceFields)
     wear_rate_2: np.ndarray = as_in(InterfaceFields)
     counts: tuple[int, ...] = ()

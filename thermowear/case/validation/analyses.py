@@ -264,15 +264,15 @@ def cycles_of_loads(case: AnyCase, analysis: Fretting, path: str) -> Iterator[Fa
 
 
 def reciprocating(case: Case) -> Iterator[Fault]:
-    """Reciprocating sliding is along x, in plane models, and has an end."""
+    """Reciprocating sliding is along x, and has an end."""
     analysis, motion, count = case.analysis, case.motion, case.cycles
     if not isinstance(analysis, Reciprocating):
         return
-    plane = case.model in ("plane-strain", "plane-stress")
-    if not plane or case.geometry.rotation_center or case.geometry.slides_across:
-        yield "model", "a reciprocating analysis needs a plane model with sliding along x"
+    if case.model == "axisymmetric" or case.geometry.rotation_center or case.geometry.slides_across:
+        yield "model", "a reciprocating analysis needs a plane or 3d model with sliding along x"
     elif case.geometry.symmetry:
-        yield "geometry.half", "reciprocating sliding is not symmetric; mesh the whole section"
+        key = "symmetry" if case.model == "3d" else "half"
+        yield f"geometry.{key}", "reciprocating sliding is not symmetric; mesh the whole section"
     if "x" in case.holder.free:
         yield "holder.free", '"x" is not allowed: the motion of body 1 along x is prescribed'
     if analysis.until == "steady" and case.holder.free != ("z",):

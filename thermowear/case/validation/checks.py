@@ -159,8 +159,6 @@ def _in_space(case: Case) -> Iterator[Fault]:
         yield "contact.transverse_friction", NO_DIRECTION
     elif case.contact.pressure_degree == "lobatto":
         yield "contact.pressure_degree", "not supported in 3d models"
-    if case.analysis.type == "reciprocating":
-        yield "analysis.type", "'reciprocating' is not supported in 3d models"
 
 
 def _moving_mesh(case: Case) -> Iterator[Fault]:

@@ -29,8 +29,6 @@ def unsupported(case: AssemblyCase) -> Iterator[Fault]:
     if not case.analysis.cyclic:
         return
     refused = f"is not supported in a {case.analysis.type} analysis"
-    if case.model == "3d" and isinstance(case.analysis, Reciprocating):
-        yield "analysis.type", "'reciprocating' is not supported in 3d models"
     if case.load.pressure:
         yield "load.pressure", refused
     for path, contact in case.contact_tables.items():
@@ -100,13 +98,13 @@ def _history(case: AssemblyCase, holder: AssemblyHolderTable) -> Iterator[Fault]
 
 
 def reciprocating(case: AssemblyCase) -> Iterator[Fault]:
-    """Bodies reciprocate along x in plane models, with one frequency, and the analysis ends."""
+    """Bodies reciprocate along x with one frequency, and the analysis ends."""
     analysis = case.analysis
     if not isinstance(analysis, Reciprocating):
         return
     refused = "is not supported in a reciprocating analysis"
     if case.model == "axisymmetric":
-        yield "model", "a reciprocating analysis needs a plane model with sliding along x"
+        yield "model", "a reciprocating analysis needs a plane or 3d model with sliding along x"
     if case.reciprocation is None:
         yield "motions", "needs a body with amplitude and frequency: [motions.NAME]"
         return
@@ -125,7 +123,7 @@ def reciprocating(case: AssemblyCase) -> Iterator[Fault]:
             yield f"holders.{name}.history", refused
         if "x" in holder.free:
             yield f"holders.{name}.free", '"x" is not allowed: motions along x are prescribed'
-        elif analysis.until == "steady" and "rotation" in holder.free:
+        elif analysis.until == "steady" and set(holder.free) - {"z", "y"}:
             yield (
                 "analysis.until",
                 f"holders.{name} can rotate: wear rates do not become uniform; give an end_time",

@@ -125,7 +125,7 @@ def _with_active(
     if eliminated is None:
         return None
     m, at_zero_depth, per_depth = active.shape[1], eliminated[..., 0], eliminated[..., 1:]
-    spread = np.eye(len(start)) - np.einsum("jnm,jmk->nk", gains, per_depth[:, :m])
+    spread = np.eye(len(start)) - np.tensordot(gains, per_depth[:, :m], axes=((0, 2), (0, 1)))
     depths = np.linalg.solve(spread, start + np.einsum("jnm,jm->n", gains, at_zero_depth[:, :m]))
     unknowns = at_zero_depth + per_depth @ depths
     return CoupledSolution(unknowns[:, :m], unknowns[:, m:], active, depths)

@@ -1,4 +1,4 @@
-"""Worn profile of a body on which the other one reciprocates.
+"""Worn profile of a body on which the other one reciprocates; in space see `swept_surface`.
 
 The depth is piecewise linear on a separate grid along the face, as the contact points differ in
 every position. A position represents a segment of the stroke: the depth at a point is the mean over
@@ -14,12 +14,11 @@ from itertools import pairwise
 
 import numpy as np
 import scipy
-from scipy.linalg import block_diag
+import scipy.sparse as sp
 
 from ..search.contacts import Contacts
 from ..search.pairing import Pairing
-
-_STEPS = 16  # samples of the mean over a segment of the stroke
+from .swept_surface import STEPS, SweptSurface
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ class StrokeGrid:
         places = pairing.sides[1].position
         if length == 0.0:
             return hat_functions(self.position, places)
-        steps = length * ((np.arange(_STEPS) + 0.5) / _STEPS - 0.5)
+        steps = length * ((np.arange(STEPS) + 0.5) / STEPS - 0.5)
         return np.mean([hat_functions(self.position, places + step) for step in steps], axis=0)
 
 
@@ -67,12 +66,12 @@ class StrokeGrids:
 
     Attributes
     ----------
-    each : tuple of StrokeGrid
+    each : tuple of StrokeGrid or SweptSurface
     strokes : tuple of float
         Amplitude at each interface relative to that given.
     """
 
-    each: tuple[StrokeGrid, ...]
+    each: tuple[StrokeGrid | SweptSurface, ...]
     strokes: tuple[float, ...]
 
     @cached_property
@@ -86,7 +85,7 @@ class StrokeGrids:
         ends = np.cumsum([0, *(len(grid.areas) for grid in self.each)])
         return tuple(slice(int(a), int(b)) for a, b in pairwise(ends))
 
-    def hats(self, contacts: Contacts, length: float = 0.0) -> np.ndarray:
+    def hats(self, contacts: Contacts, length: float = 0.0) -> sp.csr_array:
         """Values of the hat functions at all contact points, shape (n, n_nodes).
 
         Parameters
@@ -96,7 +95,8 @@ class StrokeGrids:
             Length of the segment of the given stroke, see `StrokeGrid.hats` [m].
         """
         parts = zip(self.each, contacts.each, self.strokes, strict=True)
-        return block_diag(*(grid.hats(p, abs(stroke) * length) for grid, p, stroke in parts))
+        values = [sp.csr_array(grid.hats(p, abs(s) * length)) for grid, p, s in parts]
+        return sp.block_diag(values, format="csr")
 
 
 def track(

@@ -13,7 +13,7 @@ from pydantic import model_validator
 
 from ...case.tables.geometry import Geometry, named
 from ...case.values.section import KeyFault
-from ...case.values.units import Length
+from ...case.values.units import Distance, Length
 from ..meshing.cells import (
     MeshedBody,
     between,
@@ -36,6 +36,9 @@ class RectangularPunch(Geometry):
     size_x, size_y, height : float
         Dimensions of the punch [m].
     block_x, block_y, block_height : float [m]
+    stroke : float
+        Amplitude of a punch that reciprocates along x: the block is meshed for contact over the
+        whole stroke [m].
     """
 
     name = "rectangular-punch"
@@ -56,15 +59,17 @@ class RectangularPunch(Geometry):
     block_x: Length
     block_y: Length
     block_height: Length
+    stroke: Distance = 0.0
 
     @model_validator(mode="after")
     def _fits(self):
-        for axis in "xy":
+        for axis, stroke in (("x", self.stroke), ("y", 0.0)):
             size, block = getattr(self, f"size_{axis}"), getattr(self, f"block_{axis}")
-            if not size < 0.9 * block:
+            if not size + 2 * stroke < 0.9 * block:
+                and_stroke = f" and twice the stroke {stroke:g} m" if stroke else ""
                 raise KeyFault(
                     f"block_{axis}",
-                    f"{block:g} m must be greater than 10/9 of size_{axis} {size:g} m",
+                    f"{block:g} m must be greater than 10/9 of size_{axis} {size:g} m{and_stroke}",
                 )
         return self
 
@@ -72,7 +77,7 @@ class RectangularPunch(Geometry):
         return self.size_x * self.size_y
 
     def build(self, mesh, zone=None):
-        at_face, (x, y) = level(2, 0.0), (self.size_x / 2, self.size_y / 2)
+        at_face, (x, y) = level(2, 0.0), (self.size_x / 2 + self.stroke, self.size_y / 2)
         return tagged_bodies(
             {
                 "punch": self._punch(*mesh.face("punch")),
@@ -96,6 +101,11 @@ class RectangularPunch(Geometry):
 
     def _block(self, elements: int, grading: float) -> MeshedBody:
         *faces, thin, largest = self._face(elements, grading)
+        if self.stroke > 0.0:  # the ends of the punch move over the face: uniform elements
+            end = self.size_x / 2 + self.stroke
+            faces[0] = np.linspace(
+                -end, end, round((len(faces[0]) - 1) * 2 * end / self.size_x) + 1
+            )
         x, y = (
             joined(
                 growing(-face[-1], -block / 2, thin, grading, largest),

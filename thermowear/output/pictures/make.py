@@ -36,6 +36,7 @@ _OVER_A_SURFACE: dict[str, Callable[..., None]] = {
     "wear": maps.draw_wear_maps,
     "coating": maps.draw_coating_maps,
     "friction": maps.draw_friction_maps,
+    "track": maps.draw_track_maps,
     "mode": draw_modes,
 }
 _OF_THE_INTERFACE = ("wear", "coating")

@@ -85,6 +85,20 @@ def draw_friction_maps(folder: Path, contact: str = "") -> None:
         _statuses(axes.flat[len(names)], triangles, data)
 
 
+def draw_track_maps(folder: Path, contact: str = "") -> None:
+    """Draw ``track.png``: wear depths of both bodies, body 1 in the middle of its stroke."""
+    moving, track = (
+        tables.read(folder / name_at(stem, None, contact)) for stem in ("interface", "track")
+    )
+    names = [
+        (data, name) for data, name in ((moving, "wear_1"), (track, "wear_2")) if data[name].any()
+    ]
+    meshes = [triangulated(*(d.drawn(c) for c in ("x", "y", "weight"))) for d, _ in names]
+    with _maps(folder / picture("track", contact), meshes[-1], len(names)) as (_, axes):
+        for axis, triangles, (data, name) in zip(axes.flat, meshes, names, strict=False):
+            _map(axis, triangles, data, name)
+
+
 def _arrows(axis: Axes, triangles: Triangulation, data: tables.TableColumns, name: str) -> None:
     """Draw the directions of shear or slip on a grid of points, where it is not small."""
     x, y = (np.linspace(v.min(), v.max(), _ARROWS + 1) for v in (triangles.x, triangles.y))

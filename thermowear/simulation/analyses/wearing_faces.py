@@ -28,8 +28,6 @@ def wearing_faces(system: System, analysis: Analysis, observer: Observer) -> Sys
             unsupported = "contact faces of several materials that wear by different laws"
         elif coated:
             unsupported = "contact faces with layers"
-        elif system.contacts.in_space and analysis.type != "fretting":
-            unsupported = "bodies in space"
         if unsupported:
             raise CaseError(f"a {analysis.type} analysis does not support {unsupported}")
     if not coated or analysis.type not in _FOR_EVER:

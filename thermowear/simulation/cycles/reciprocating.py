@@ -8,6 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...contact.search.pairing import Pairing
+from ...contact.wear.swept_surface import SweptSurface
+from ...contact.wear.track import StrokeGrid
 from ...model.analyses import ReciprocatingAnalysis
 from ...results import ContactRow, HistoryRow, WornTrack
 from ..interface.body_state import contact_state
@@ -89,12 +91,9 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
         """Worn depths and wear rates along the faces of the second bodies."""
         grids, rates = self._problem.track.each, self._problem.rates(state.pressure)
         pairs = zip(self._system.contacts.each, grids, strict=True)
-        return WornTrack(
-            np.concatenate([_x_along(pairing, grid.position) for pairing, grid in pairs]),
-            self._problem.split(state.worn)[1],
-            self._problem.split(rates)[1],
-            tuple(len(grid.position) for grid in grids),
-        )
+        x, y, z, area = np.concatenate([_places(pairing, grid) for pairing, grid in pairs]).T
+        worn, rate = (self._problem.split(of)[1] for of in (state.worn, rates))
+        return WornTrack(x, y, z, area, worn, rate, tuple(len(grid.areas) for grid in grids))
 
     def summary(self) -> dict:
         rows, pressure = self.table(HistoryRow), self.last.state.pressure
@@ -149,12 +148,15 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
         return np.array([[v[k] @ area[k] for k in own] for v, area, own in sides])
 
 
-def _x_along(pairing: Pairing, position: np.ndarray) -> np.ndarray:
-    """Coordinates x at positions along the face of the second body [m]."""
+def _places(pairing: Pairing, grid: StrokeGrid | SweptSurface) -> np.ndarray:
+    """Coordinates and areas of the nodes of a grid, (n_nodes, 4); of a section only x [m, m²]."""
+    if isinstance(grid, SweptSurface):
+        return np.column_stack([grid.nodes, grid.areas])
     face = pairing.sides[1].face
     ends = face.position(np.arange(len(face.nodes)), np.ones(len(face.nodes)))
-    return np.interp(
-        position,
+    x = np.interp(
+        grid.position,
         np.concatenate([[0.0], ends]),
         np.concatenate([face.nodes[:1, 0, 0], face.nodes[:, -1, 0]]),
     )
+    return np.column_stack([x, np.full((len(x), 3), np.nan)])

@@ -9,7 +9,8 @@ and the rates, averaged over the cycle with time shares c_j, follow from the loc
 
     W1'(x) = Σ_j c_j κ1 p_j(x)^b |v_j|^a,      W2'(ξ) = Σ_j c_j κ2 p_j(ξ - X_j)^b |v_j|^a
 
-W1 has coefficients in the pressure basis, like fretting wear; for W2 see `contact.wear.track`.
+W1 has coefficients in the pressure basis, like fretting wear; for W2 see `contact.wear.track`, in
+space `contact.wear.swept_surface`.
 
 Steady state. Steady pressures need ``W1'(x) + W2'(x + X) = V(X)`` wherever the faces touch, V being
 the approach rate of a holder that does not rotate. The derivative along x gives
@@ -17,6 +18,9 @@ the approach rate of a holder that does not rotate. The derivative along x gives
 symmetric stroke. Both rates are then uniform for any pressures, and for ``a = b = 1`` the load
 determines them: with the mean speed v, the half-width h and the thickness t of body 1, and the
 amplitude A, ``W1' = κ1 F v / (2 h t)`` and ``W2' = κ2 F v / (2 (h + A) t)``.
+
+In space the same holds on each line along the stroke, and ``W1' + W2' = V`` on all of them. With
+the length l of the face on a line ``V = F v / ∫ dy / (κ1/l + κ2/(l + 2 A))``.
 """
 
 from __future__ import annotations
@@ -26,9 +30,11 @@ from dataclasses import replace
 import numpy as np
 
 from ...contact.operators.pressure import dense, function_ranges
+from ...contact.search.pairing import Pairing
 from ...contact.solvers.coupled_positions import CoupledSolution, solve_coupled
 from ...contact.solvers.signorini import solve_contact
 from ...contact.wear.implicit_step import Slope, newton_with_wear
+from ...contact.wear.swept_surface import SweptSurface, swept_surface
 from ...contact.wear.track import StrokeGrid, StrokeGrids, track
 from ...errors import ComputationError
 from ..interface.contact_solver import ContactSolution
@@ -36,8 +42,7 @@ from ..interface.sdirk import InterfaceState, WearProblem
 from ..system.system import System
 from .stroke import Position, condensed, stroke_distribution
 from .stroke_wear import CycleContact, local_wear
-
-_INNER = 0.9  # part of the faces that the distance from the steady state covers, without their ends
+from .unevenness import unevenness
 
 
 class ReciprocatingProblem(WearProblem):
@@ -66,7 +71,7 @@ class ReciprocatingProblem(WearProblem):
         self.functions = function_ranges(contacts, system.basis)
         speeds = np.array([[position.speed] for position in stroke])
         self._local = local_wear(system, self.functions, speeds, strokes)
-        self._lengths = [float(pairing.position.max()) for pairing in contacts.each]
+        self._lengths = [_length(pairing) for pairing in contacts.each]
         self.track = StrokeGrids(
             tuple(self._grid(system, stroke, k, float(abs(s))) for k, s in enumerate(strokes)),
             tuple(map(float, strokes)),
@@ -75,20 +80,27 @@ class ReciprocatingProblem(WearProblem):
         self._shares = np.array([position.share for position in stroke])
         weighted = dense(system.contact.weighted)
         self.areas = weighted.sum(axis=0), self.track.areas
-        places = (contacts.position @ weighted) / self.areas[0]
-        self._places = [places[own] for own in self.functions]
+        self._unevenness = unevenness(system, stroke, self.track, self.functions)
         self._spread = stroke_distribution(self._contacts, self.track, self._shares)[
             list(system.laws)
         ]
 
-    def _grid(self, system: System, stroke: list[Position], index: int, ratio: float) -> StrokeGrid:
+    def _grid(
+        self, system: System, stroke: list[Position], index: int, ratio: float
+    ) -> StrokeGrid | SweptSurface:
         """Grid of an interface with a stroke relative to that given."""
         pairings = [there.contacts.each[index] for there in self._systems]
         lengths = [ratio * position.length for position in stroke]
         own = self.functions[index]
         # resolution is limited by the parts of the stroke and by the pressure basis
-        spacing = max(float(np.mean(lengths)), self._lengths[index] / (own.stop - own.start))
-        return track(pairings, lengths, spacing, system.model.thickness or 1.0)
+        part, count = float(np.mean(lengths)), own.stop - own.start
+        if not system.contacts.in_space:
+            spacing = max(part, self._lengths[index] / count)
+            return track(pairings, lengths, spacing, system.model.thickness or 1.0)
+        pairing = system.contacts.each[index]
+        apart = float(np.sqrt(pairing.weights.sum() / count))
+        reach = max(ratio * (abs(position.offset) + position.length / 2) for position in stroke)
+        return swept_surface(pairing, reach, (max(part, apart), apart))
 
     def split(self, depths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coefficients of the first bodies, shape (m,), and values at the nodes of the second."""
@@ -143,16 +155,8 @@ class ReciprocatingProblem(WearProblem):
         return 1e-3 * float((opened / self.areas[0]).max()) / fastest if fastest > 0.0 else np.inf
 
     def distance(self, state: InterfaceState, steady) -> float:
-        """Nonuniformity of the wear rates, which are uniform along both faces in the steady state.
-
-        Largest relative deviation from the mean, excluding the ends of the faces: at the turning
-        points the punch corner carries half the load, which no mesh resolves.
-        """
-        on_1, on_2 = self.split(self.rates(state.pressure))
-        parts = [(on_1[own], at) for own, at in zip(self.functions, self._places, strict=True)]
-        grids = zip(self.track.ranges, self.track.each, strict=True)
-        parts += [(on_2[own], grid.position) for own, grid in grids]
-        return max(_unevenness(rate, place) for rate, place in parts if rate.any())
+        """Nonuniformity of the wear rates, see `unevenness`."""
+        return self._unevenness(*self.split(self.rates(state.pressure)))
 
     def stage(
         self,
@@ -203,6 +207,7 @@ class ReciprocatingProblem(WearProblem):
         return ContactSolution(np.maximum(solution.coefficients, 0.0), motion, solution)
 
 
-def _unevenness(rate: np.ndarray, place: np.ndarray) -> float:
-    inner = np.abs(place - (place[0] + place[-1]) / 2) <= _INNER * (place[-1] - place[0]) / 2
-    return float(np.abs(rate[inner] / rate[inner].mean() - 1).max())
+def _length(pairing: Pairing) -> float:
+    """Length of the face of body 1; in space its size [m]."""
+    end = float(pairing.position.max())
+    return pairing.extent if np.isnan(end) else end

@@ -166,7 +166,8 @@ def _moved(
 ) -> tuple[Pairing, Basis]:
     """Contact points and pressure space of an interface, its first body moved along x [m]."""
     face_1, face_2 = (side.face for side in pairing.sides)
-    face_1 = replace(face_1, nodes=face_1.nodes + np.array([offset, 0.0]))
+    along = np.eye(face_1.nodes.shape[-1])[0]
+    face_1 = replace(face_1, nodes=face_1.nodes + offset * along)
     given = system.model, interface, system.comm, system.elastic.kinematics
     found, basis = contact_points(*given, face_1, face_2)
     if found.unpaired > pairing.unpaired + _UNPAIRED:
@@ -194,7 +195,7 @@ def condensed(stroke: list[Position], grid: StrokeGrids) -> CoupledContacts:
     contacts = [system.contact for system in systems]
     compliances, gaps, gaps_per_depth = [], [], []
     for position, system, contact in zip(stroke, systems, contacts, strict=True):
-        passed = contact.weighted.T @ grid.hats(system.contacts, position.length)
+        passed = dense(contact.weighted.T @ grid.hats(system.contacts, position.length))
         soft = dense(contact.weighted.T @ scaled(system.softness, contact.basis))
         compliances.append(contact.compliance + soft)
         gaps.append(contact.weak(system.gap - system.holder.imposed))

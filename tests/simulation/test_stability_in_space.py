@@ -114,8 +114,8 @@ def test_static_speeds_of_the_section():
 
 
 def test_hot_spots_across_the_sliding():
-    """requirement: waves across the sliding, which the section lacks, come first on a wide block; the
-    first mode of the section is among its modes, to 1e-9.
+    """requirement: waves across the sliding, which the section lacks, come first on a wide block;
+    the first mode of the section is among its modes, to 1e-9.
     """
     wide = BLOCKS.extruded(np.linspace(0.0, 3 * WIDTH, 5), axis=1)
     found = computed(wide, "3d", ("low", "high"), 0.3).summary["static_speed_factors"]

@@ -16,6 +16,7 @@ from .cases.contact.patch_in_space import patch_3d
 from .cases.cycles.fretting import fretting_cylinder, fretting_wear, mindlin
 from .cases.cycles.fuel_fretting import fuel_fretting
 from .cases.cycles.reciprocating import reciprocating
+from .cases.cycles.reciprocating_in_space import reciprocating_3d
 from .cases.cycles.spheres import fretting_sphere, mindlin_sphere
 from .cases.heat.blocks import pressure_conductance, temperature_dependent, two_slabs
 from .cases.heat.instability import half_plane_instability, sliding_rod
@@ -43,8 +44,9 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     methods_agree, mindlin, growing_cylinder, growing_sphere, block_on_ring, pin_on_disc,
     deep_wear, deep_wear_3d, beam_shakedown, fretting_wear, fretting_cylinder, fuel_fretting,
     mindlin_sphere, fretting_sphere,
-    reciprocating, moving_band, two_slabs, pressure_conductance, temperature_dependent,
-    minimality, step_flux, braking_stop, sliding_rod, half_plane_instability, optimal_shape,
+    reciprocating, reciprocating_3d, moving_band, two_slabs, pressure_conductance,
+    temperature_dependent, minimality, step_flux, braking_stop, sliding_rod,
+    half_plane_instability, optimal_shape,
     ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face, coating, coated_bush,
     glued_blocks, pad_disk_pad, clutch_pack, face_seal, two_shoes, floating_caliper,
     layer_instability, cad_part,

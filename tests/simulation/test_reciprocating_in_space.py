@@ -353,6 +353,11 @@ def test_a_case_and_its_files(tmp_path):
             'needs holder.free = ["z"]',
         ),
         ({"motion": {"velocity": "1 m/s"}}, "motion.velocity", "amplitude and frequency"),
+        (
+            {"motion.axis": {"direction": "z", "point": ["0 mm", "0 mm", "0 mm"]}},
+            "motion.axis",
+            "is along x",
+        ),
         ({"contact.method": "nitsche"}, "contact.method", "use condensed"),
         ({"wear.block.spread": "track"}, "wear.block.spread", "leave it out"),
     ],

@@ -285,6 +285,7 @@ def reciprocating(case: Case) -> Iterator[Fault]:
         "frequency": "missing; a reciprocating analysis needs it",
         "velocity": "not supported; a reciprocating motion has amplitude and frequency",
         "angular_velocity": "not supported; a reciprocating motion has amplitude and frequency",
+        "axis": "not supported; a reciprocating motion is along x",
     }.items():
         if motion is not None and (getattr(motion, key) is None) == text.startswith("missing"):
             yield f"motion.{key}", text

@@ -115,7 +115,7 @@ def reciprocating(case: AssemblyCase) -> Iterator[Fault]:
             yield f"motions.{name}.{key}", f"{refused}; give amplitude and frequency"
         elif motion.frequency != frequency:
             yield f"motions.{name}.frequency", "must be the same for all bodies"
-        for key in ("across", "history"):
+        for key in ("across", "history", "axis"):
             if getattr(motion, key):
                 yield f"motions.{name}.{key}", refused
     for name, holder in case.holders.items():

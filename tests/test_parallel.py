@@ -76,6 +76,10 @@ def slow(*values):
         slow(COLD_RUNNING_IN, ["mesh.degree=3", "mesh.bodies.plate.elements=7"]),
         slow(DEMOS / "cylinder_on_block.toml", ["contact.method=nitsche"]),
         (
+            DEMOS / "cylinder_stick_slip.toml",
+            ["contact.method=nitsche", "mesh={degree=2, elements=16}", "analysis.increments=1"],
+        ),
+        (
             DEMOS / "sphere_on_block_coated.toml",
             ["mesh.elements=20", "analysis.end_time=100 s", "analysis.output_times=['1 s']"],
         ),

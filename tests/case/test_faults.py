@@ -434,24 +434,10 @@ HISTORIES = [
     Bad("output of fretting twice", {TIMES: ["1 s", "1000 ms"]}, TIMES, "twice", FRETTING),
     Bad("no increments", {"analysis.increments": 0}, "analysis.increments", "at least 1", FRETTING),
     Bad(
-        "fretting by Nitsche",
-        {"contact.method": "nitsche"},
-        "contact.method",
-        "'nitsche' does not support sticking",
-        FRETTING,
-    ),
-    Bad(
         "fretting pointwise",
         POINTWISE,
         "contact.method",
         "'pointwise' does not support a fretting analysis",
-        FRETTING,
-    ),
-    Bad(
-        "fretting by penalty",
-        {"contact.method": "penalty"},
-        "contact.method",
-        "use condensed",
         FRETTING,
     ),
     Bad(

@@ -2,8 +2,9 @@
 
 import numpy as np
 
+from thermowear.contact.friction.condensed_friction import frictional_contact
 from thermowear.contact.friction.stick_slip_state import Loads
-from thermowear.contact.operators.frictional_contact import HeldMotion, frictional_contact
+from thermowear.contact.operators.tangential import HeldMotion
 from thermowear.laws.motions import translation
 
 PRESS = HeldMotion(translation((0.0, -1.0)), role="press")

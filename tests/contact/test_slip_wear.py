@@ -6,9 +6,10 @@ import itertools
 import numpy as np
 import pytest
 
+from thermowear.contact.friction.frictional_contact import unloaded
 from thermowear.contact.friction.slip_wear import SlipWear, WornProfile, WornProfiles
 from thermowear.contact.friction.stick_slip import follow
-from thermowear.contact.friction.stick_slip_state import Status, unloaded
+from thermowear.contact.friction.stick_slip_state import Status
 from thermowear.laws import PowerWear
 from thermowear.reference.growing_contact import growing_line
 from thermowear.reference.hertz import MindlinLine

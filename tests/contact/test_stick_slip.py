@@ -16,10 +16,11 @@ from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.faces.face import gather_face
 from thermowear.contact.friction import stick_slip
+from thermowear.contact.friction.condensed_friction import condense_tangential
+from thermowear.contact.friction.frictional_contact import unloaded
 from thermowear.contact.friction.stick_slip import FullSliding, advance, follow
-from thermowear.contact.friction.stick_slip_state import Status, unloaded
+from thermowear.contact.friction.stick_slip_state import Status
 from thermowear.contact.operators.pressure import pressure_basis
-from thermowear.contact.operators.tangential import condense_tangential
 from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact

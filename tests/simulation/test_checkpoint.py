@@ -109,6 +109,12 @@ def assert_the_same(one, other):
             marks=pytest.mark.slow,
         ),
         pytest.param(
+            DEMOS / "cylinder_fretting.toml",
+            ("mesh={degree=2, elements=12}", "contact.method=nitsche", "wear.cycles=6")
+            + ("analysis.increments=1", "analysis.jump=1", "analysis.output_times=['50 ms']"),
+            id="fretting-by-nitsche",
+        ),
+        pytest.param(
             DEMOS / "sphere_fretting.toml",
             ("mesh.elements=4", "analysis.increments=2", "wear.cycles=200")
             + ("analysis.output_times=['0.0625 s']",),

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.contact.friction.condensed_friction import condense_tangential
 from thermowear.contact.friction.stick_slip import FullSliding, follow
 from thermowear.contact.friction.stick_slip_state import Loads
-from thermowear.contact.operators.tangential import condense_tangential, tangential_frame
+from thermowear.contact.operators.tangential import tangential_frame
 from thermowear.geometry.geometries.rectangular_punch import RectangularPunch
 from thermowear.simulation.cycles.held_loads import HeldLoads
 
@@ -33,7 +34,7 @@ class TurnedPunch(RectangularPunch):
         return found
 
 
-def case(history, turned=0.0, wear=None, elements=4, **analysis):
+def case(history, turned=0.0, wear=None, elements=4, method="condensed", **analysis):
     """A punch on a block, an instant a second."""
     count = len(next(iter(history.values())))
     geometry = TurnedPunch(type="rectangular-punch", turned=turned, **SIZES)
@@ -46,7 +47,7 @@ def case(history, turned=0.0, wear=None, elements=4, **analysis):
             "force": f"{FORCE} N",
             "history": {"time": [f"{t} s" for t in range(count)]} | history,
         },
-        "contact": {"friction": MU},
+        "contact": {"friction": MU, "method": method},
         "wear": wear or {},
         "analysis": {"type": "fretting", "increments": 4} | analysis,
     }
@@ -83,11 +84,15 @@ def slid():
 # ---- direction ----
 
 
-def test_turned_with_the_mesh_it_is_the_same():
+@pytest.mark.parametrize("method", ["condensed", "penalty", "nitsche"])
+def test_turned_with_the_mesh_it_is_the_same(method):
     """requirement: no axis is preferred; forces and meshes turned by 37 degrees alike."""
     angle, forces = radians(37), (0.0, 300.0, -200.0)
-    one = tw.run(case(pushed(*forces)))
-    two = tw.run(case(pushed(*forces, angle=angle), turned=angle))
+    settings = {"method": method}
+    if method != "condensed":
+        settings |= {"elements": 2, "increments": 2}
+    one = tw.run(case(pushed(*forces), **settings))
+    two = tw.run(case(pushed(*forces, angle=angle), turned=angle, **settings))
     f, g, (c, s) = one.friction.last, two.friction.last, (cos(angle), sin(angle))
     scale = f.shear.max()
     np.testing.assert_allclose(c * g.x + s * g.y, f.x, atol=1e-12)
@@ -145,6 +150,21 @@ def test_gross_slip_in_any_direction(angle):
     beyond = tw.run(case(pushed(0.0, 1.01 * MU * FORCE, angle=angle)))
     assert isinstance(beyond.stopped, FullSliding)
     assert "body 1 slides; friction carries" in str(beyond.stopped)
+
+
+@pytest.mark.parametrize("method", ["penalty", "nitsche"])
+def test_gross_slip_on_the_full_system(method):
+    """requirement: the same limit by the other methods; they wear by k P times the way."""
+    path = moved((0, 0), (20, 15), (40, 30))
+    slid = tw.run(case(path, wear=PUNCH_WEARS, elements=2, method=method, increments=1))
+    rows = slid.friction.rows
+    volume = rows[-1].wear_volume_1 - rows[-2].wear_volume_1
+    assert volume == pytest.approx(K * FORCE * 25e-6, rel=1e-4, abs=0.0)
+    last = slid.friction.tangential[-1]
+    np.testing.assert_allclose([last.force_x, last.force_y], [320.0, 240.0], rtol=1e-2)
+    beyond = pushed(0.0, 1.01 * MU * FORCE, angle=0.6)
+    refused = tw.run(case(beyond, elements=2, method=method, increments=1))
+    assert isinstance(refused.stopped, FullSliding)
 
 
 # ---- twist ----

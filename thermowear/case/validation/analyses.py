@@ -69,11 +69,10 @@ def condensed_only(case: Case) -> Iterator[Fault]:
 
 def _condensed_features(case: Case) -> Iterator[str]:
     type_, heat = case.analysis.type, case.heat
-    own = {"reciprocating": "a reciprocating analysis", "fretting": "sticking"}
     if case.contact.method == "pointwise":
         yield from _beside_pressure(case)
-    elif type_ in own:
-        yield own[type_]
+    elif type_ == "reciprocating":
+        yield "a reciprocating analysis"
     if case.model == "3d" and type_ == "transient" and _passes_disk(case):
         yield "wear spread over the track of a disk in 3d"
     elif type_ == "stability":

@@ -23,6 +23,8 @@ from functools import cached_property
 
 import numpy as np
 
+from ..solvers.signorini import solve_contact
+
 _TOLERANCE = 1e-9
 
 
@@ -83,6 +85,20 @@ class CoulombProblem:
         sticking = (length <= radius) & (radius > 0)
         shrink = np.where(sticking, 1.0, radius / np.where(length > 0, length, 1.0))
         return np.maximum(normal, 0.0), shrink[:, None] * tangential, sticking
+
+    def sliding_pressure(self, presses: np.ndarray, drag: np.ndarray) -> np.ndarray:
+        """Coefficients λ (m,) where all slide, see `gross_slip.SlidingProblem`."""
+        m = len(self.friction)
+        compliance = self.compliance[:m, :m].copy()
+        modes = self.modes[:m, presses]
+        carrying = modes.copy()
+        for number, along in enumerate(drag, start=1):
+            block = slice(number * m, (number + 1) * m)
+            compliance += self.compliance[:m, block] * along
+            carrying += along[:, None] * self.modes[block][:, presses]
+        force = self.force[presses]
+        found = solve_contact(compliance, self.offset[:m], modes, force, force_modes=carrying)
+        return found.coefficients
 
     def trial(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Trial tractions ``λ - c y_n``, shape (m,), and ``τ - c y_t``, shape (m, t) [Pa]."""

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from scipy.optimize import minimize
 
 from ...errors import ComputationError
-from ..operators.frictional_contact import HeldMotion
-from ..solvers.signorini import solve_contact
-from .coulomb import CoulombProblem
+from ..operators.tangential import HeldMotion
 
 _MARGIN = 1e-9
 _SWEEPS = 4
@@ -23,8 +22,53 @@ class FullSliding(ComputationError):
     """Error for a tangential force that exceeds the friction limit."""
 
 
+class SlidingProblem(Protocol):
+    """Contact problem of one increment, `coulomb.CoulombProblem` or on the full system."""
+
+    @property
+    def friction(self) -> np.ndarray:
+        """Coefficients of friction, shape (m,)."""
+
+    @property
+    def modes(self) -> np.ndarray:
+        """Weak modes of the free motions, shape (M, k) [m²]."""
+
+    @property
+    def force(self) -> np.ndarray:
+        """Forces on the free motions, shape (k,) [N]."""
+
+    def sliding_pressure(self, presses: np.ndarray, drag: np.ndarray) -> np.ndarray:
+        """Coefficients λ, shape (m,), where all contacts slide [Pa].
+
+        Parameters
+        ----------
+        presses : ndarray of bool, shape (k,)
+            Motions that remain free.
+        drag : ndarray, shape (t, m)
+            Shear per pressure.
+        """
+
+
+def check_gross_slip_of_holders(
+    problem: SlidingProblem, presses: np.ndarray, slides: np.ndarray, held: Sequence[HeldMotion]
+) -> None:
+    """Check each holder under tangential forces, see `check_gross_slip`.
+
+    Parameters
+    ----------
+    problem : SlidingProblem
+    presses, slides : ndarray of bool, shape (k,)
+        True for the free motions along load directions, and under tangential forces.
+    held : sequence of HeldMotion
+        All k free motions.
+    """
+    for holder in dict.fromkeys(held[k].holder for k in np.flatnonzero(slides)):
+        own = [k for k in np.flatnonzero(slides) if held[k].holder == holder]
+        check_gross_slip(problem, presses, np.array(own), [held[k] for k in own])
+
+
 def check_gross_slip(
-    problem: CoulombProblem,
+    problem: SlidingProblem,
     presses: np.ndarray,
     slides: np.ndarray,
     held: Sequence[HeldMotion],
@@ -38,7 +82,7 @@ def check_gross_slip(
 
     Parameters
     ----------
-    problem : CoulombProblem
+    problem : SlidingProblem
     presses : ndarray of bool, shape (k,)
         True for the motions along load directions, which are free in gross slip.
     slides : ndarray of int
@@ -63,6 +107,8 @@ def check_gross_slip(
                 "contact: the bodies do not touch, so that nothing balances a tangential force; "
                 "give a tangential displacement, or press"
             )
+        if not asked.any():
+            return
         slip = sliding.mechanism(λ, slip)
     carried = sliding.power(λ, slip)
     if asked @ slip >= (1 - _MARGIN) * carried:
@@ -73,7 +119,7 @@ def check_gross_slip(
 class _Sliding:
     """Contacts that slide by motions v under tangential forces; see `check_gross_slip`."""
 
-    problem: CoulombProblem
+    problem: SlidingProblem
     presses: np.ndarray
     slides: np.ndarray
 
@@ -107,19 +153,10 @@ class _Sliding:
 
     def pressure(self, slip: np.ndarray) -> np.ndarray:
         """Pressure λ (m,) of the contacts that slide."""
-        problem, slid = self.problem, self.drawn @ slip
-        m, lengths = len(problem.friction), np.linalg.norm(slid, axis=0)
-        drag = problem.friction * slid / np.where(lengths > 0, lengths, 1.0)  # τ = drag λ
-        compliance = problem.compliance[:m, :m].copy()
-        modes = problem.modes[:m, self.presses]
-        carrying = modes.copy()
-        for number, along in enumerate(drag, start=1):
-            block = slice(number * m, (number + 1) * m)
-            compliance += problem.compliance[:m, block] * along
-            carrying += along[:, None] * problem.modes[block][:, self.presses]
-        force = problem.force[self.presses]
-        found = solve_contact(compliance, problem.offset[:m], modes, force, force_modes=carrying)
-        return found.coefficients
+        slid = self.drawn @ slip
+        lengths = np.linalg.norm(slid, axis=0)
+        drag = self.problem.friction * slid / np.where(lengths > 0, lengths, 1.0)  # τ = drag λ
+        return self.problem.sliding_pressure(self.presses, drag)
 
     def power(self, λ: np.ndarray, slip: np.ndarray) -> float:
         """Power D(v) that the contacts of a pressure take, convex in v."""

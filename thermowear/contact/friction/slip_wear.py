@@ -17,10 +17,9 @@ is transferred back to ω by its adjoint, which conserves volume.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -30,7 +29,6 @@ from ..operators.pressure import function_ranges
 from ..search.contacts import Contacts
 from ..search.pairing import Pairing
 from ..wear.track import hat_functions
-from .stick_slip_state import StickSlipState
 from .worn_surface import worn_surface
 
 
@@ -97,6 +95,44 @@ class WornProfiles:
         return block_diag(*(profile.wear_transfer(slip) for profile, slip in pairs))
 
 
+@dataclass(frozen=True)
+class ProfilesAtPoints:
+    """Worn profiles seen by a contact in points, each with a function of its own.
+
+    The profiles keep the basis Ψ: depths worn at the points, collected by the adjoint of their
+    interpolation, do not roughen the faces within an element.
+
+    Attributes
+    ----------
+    profiles : WornProfiles
+    basis : ndarray, shape (m, m_Ψ)
+        Ψ at the points.
+    areas : ndarray, shape (m,)
+        Areas of the points [m²].
+    """
+
+    profiles: WornProfiles
+    basis: np.ndarray
+    areas: np.ndarray
+
+    @cached_property
+    def _means(self) -> np.ndarray:
+        """Weighted means with the functions Ψ of depths at the points, shape (m_Ψ, m)."""
+        weighted = self.basis.T * self.areas
+        return weighted / weighted.sum(axis=1, keepdims=True)
+
+    def interpolation(self, travel: np.ndarray) -> np.ndarray:
+        """Depths at the points from coefficients of the profiles, shape (m, m_Ψ)."""
+        return self.basis @ self.profiles.interpolation(travel)
+
+    def wear_transfer(self, travel: np.ndarray) -> np.ndarray:
+        """Coefficients of the profiles from the depths worn at the points, shape (m_Ψ, m)."""
+        return self.profiles.wear_transfer(travel) @ self._means
+
+
+AnyProfiles: TypeAlias = WornProfiles | ProfilesAtPoints
+
+
 def worn_profiles(contacts: Contacts, weighted: np.ndarray, side: int) -> WornProfiles:
     """Worn profiles of the first (side 0) or of the second bodies in the basis of the pressure.
 
@@ -136,7 +172,7 @@ class SlipWear:
     laws : tuple of Law
         Wear laws of the first, of the second faces or of both, independent of temperature and
         depth.
-    profiles : tuple of WornProfiles
+    profiles : tuple of WornProfiles or ProfilesAtPoints
         Worn profiles of the same faces.
     friction : float or ndarray, shape (m,)
         Coefficient of friction.
@@ -147,17 +183,15 @@ class SlipWear:
     """
 
     laws: tuple[Law, ...]
-    profiles: tuple[WornProfiles, ...]
+    profiles: tuple[AnyProfiles, ...]
     friction: float | np.ndarray
     duration: float
     repeats: int = 1
 
-    def depth_at_contact(self, worn: np.ndarray, travel: np.ndarray) -> np.ndarray:
-        """Total worn depth at the contact from the profiles, shape (n_wearing, m) to (m,) [m]."""
-        depth = np.zeros(worn.shape[1])
-        for own, profile in zip(worn, self.profiles, strict=True):
-            depth += profile.interpolation(travel) @ own
-        return depth
+    def depths_at_contact(self, worn: np.ndarray, travel: np.ndarray) -> np.ndarray:
+        """Worn depths at the contact from the profiles, (n_wearing, m_Ψ) to (n_wearing, m) [m]."""
+        pairs = zip(worn, self.profiles, strict=True)
+        return np.array([profile.interpolation(travel) @ own for own, profile in pairs])
 
     def depths(self, pressure: np.ndarray, slip: np.ndarray) -> np.ndarray:
         """Depths worn off the bodies at the contact, shape (n_wearing, m) [m].
@@ -186,63 +220,3 @@ class SlipWear:
     def halved(self) -> SlipWear:
         """Wear of half the increment."""
         return replace(self, duration=self.duration / 2)
-
-
-@dataclass(frozen=True)
-class IncrementWear:
-    """Depth worn at the contact in an increment, see `contact.wear.implicit_step`.
-
-    The slip is that of the last solution.
-
-    Attributes
-    ----------
-    wear : SlipWear
-    before : StickSlipState
-        State at the start of the increment.
-    areas : ndarray, shape (m,)
-        Areas of the basis functions [m²].
-    travel : ndarray, shape (n_interfaces,), in space (n_interfaces, 3)
-        Displacement of the first bodies along the faces at the end of the increment, see
-        `FrictionalContact` [m].
-    """
-
-    wear: SlipWear
-    before: StickSlipState
-    areas: np.ndarray
-    travel: np.ndarray
-
-    @cached_property
-    def wear_transfer(self) -> np.ndarray:
-        """Profile of each body from its depth worn at the contact, shape (n_wearing, m, m)."""
-        return self._of_profiles(WornProfiles.wear_transfer)
-
-    @cached_property
-    def depth_per_wear(self) -> np.ndarray:
-        """Depth of each profile at the contact from the depth worn there, (n_wearing, m, m)."""
-        return self._of_profiles(WornProfiles.interpolation) @ self.wear_transfer
-
-    def _of_profiles(self, matrix: Callable[[WornProfiles, np.ndarray], np.ndarray]) -> np.ndarray:
-        m = len(self.areas)
-        each = [matrix(profile, self.travel) for profile in self.wear.profiles]
-        return np.reshape(each, (-1, m, m))
-
-    def value(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
-        """Depth at the contact, shape (m,) [m]."""
-        depths = self.wear.depths(pressure, self._slip(last))
-        return np.einsum("bmn,bn->m", self.depth_per_wear, depths)
-
-    def slope(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
-        """Derivative of the depth, shape (m, m) [m/Pa]."""
-        slopes = self.wear.slopes(pressure, self._slip(last))
-        return np.einsum("bmn,bn->mn", self.depth_per_wear, slopes)
-
-    def profiles(self, after: StickSlipState) -> np.ndarray:
-        """Worn coefficients in the profile of each body, shape (n_wearing, m) [m]."""
-        depths = self.wear.depths(after.pressure, self._slip(after))
-        return np.einsum("bmn,bn->bm", self.wear_transfer, depths)
-
-    def _slip(self, after: StickSlipState) -> np.ndarray:
-        """Magnitude of the weighted mean slip of the increment, shape (m,) [m]."""
-        return (
-            after.not_sticking * np.linalg.norm(after.slip - self.before.slip, axis=1) / self.areas
-        )

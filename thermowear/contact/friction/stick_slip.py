@@ -13,14 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import ComputationError
-from ..operators.frictional_contact import FrictionalContact
-from ..solvers.signorini import solve_contact
 from ..wear.implicit_step import newton_with_wear
-from .coulomb import CoulombProblem, CoulombSolution
-from .coulomb_solver import solve_by_newton, solve_with_fallbacks
-from .gross_slip import FullSliding, check_gross_slip
-from .slip_wear import IncrementWear, SlipWear
-from .stick_slip_state import Loads, Status, StickSlipState, unloaded
+from .frictional_contact import FrictionalContact, unloaded
+from .gross_slip import FullSliding
+from .increment_wear import IncrementWear, WearSlope
+from .slip_wear import SlipWear
+from .stick_slip_state import Loads, StickSlipState
 
 _MAX_HALVINGS = 6
 _WEAR_TOLERANCE = 1e-6  # of the depth worn in the increment
@@ -62,91 +60,26 @@ def advance(
     if len(given) != len(state.motion):
         raise ValueError(f"loads: the holders have {len(state.motion)} motions, not {len(given)}")
     friction = np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure))
-    mean = contact.mass
     # motions given at the end, or the current ones if free
     travel = contact.travel @ np.where(np.isnan(given), state.motion, given)
-    worn = state.worn.sum(axis=0) if wear is None else wear.depth_at_contact(state.worn, travel)
+    worn = np.zeros(len(friction))
+    if len(state.worn):
+        own = state.worn if wear is None else wear.depths_at_contact(state.worn, travel)
+        worn = own.sum(axis=0)
 
-    def solve(lost: np.ndarray, slope: np.ndarray, guess: StickSlipState) -> StickSlipState:
+    def solve(lost: np.ndarray, slope: WearSlope, guess: StickSlipState) -> StickSlipState:
         """Solve contact with the worn depths ``lost + slope λ``."""
-        gap = contact.weighted.T @ contact.gap + mean @ (worn + lost)
-        compliance = contact.compliance.copy()
-        compliance[: len(slope), : len(slope)] += mean @ slope
-        return _increment(contact, friction, state, guess, loads, compliance, gap)
+        return contact.increment(friction, state, guess, loads, worn + lost, slope)
 
-    no_slope = np.zeros_like(mean)
-    after = solve(no_slope[0], no_slope, state)
+    after = contact.increment(friction, state, state, loads, worn, None)
     if wear is None:
         return after
-    by_slip = IncrementWear(wear, state, mean.sum(axis=1), travel)
+    by_slip = IncrementWear(wear, state, contact.areas, travel)
     if by_slip.value(after.pressure, after).any():
         after = newton_with_wear(solve, by_slip, after, _WEAR_TOLERANCE, _NOT_CONVERGED)
     depths = by_slip.profiles(after)
     lost = wear.repeats * (after.dissipated - state.dissipated)
     return replace(after, worn=state.worn + depths, dissipated=state.dissipated + lost)
-
-
-def _increment(contact, friction, state, guess, loads: Loads, compliance, gap) -> StickSlipState:
-    """State after one increment with a given elastic and local compliance.
-
-    The guess is the previous state or one with the same loads.
-    """
-    given = loads.motions
-    free = np.isnan(given)
-    fixed = np.where(free, 0.0, given)
-    start = contact.stack(gap, -state.slip) - contact.modes @ fixed
-    modes = contact.modes[:, free]
-    problem = CoulombProblem(compliance, start, modes, loads.forces[free], friction)
-    presses, slides = contact.with_role("press")[free], contact.with_role("slide")[free]
-    closed = _predicted_active(problem, guess.pressure > 0, presses)
-    near = None
-    if guess is not state:
-        near = np.append(contact.stack(guess.pressure, guess.shear), guess.motion[free])
-    solution = solve_by_newton(problem, closed, near)
-    if solution is None or (slides.any() and not friction.any()):
-        held = [each for each, is_free in zip(contact.held, free, strict=True) if is_free]
-        for holder in dict.fromkeys(held[k].holder for k in np.flatnonzero(slides)):
-            own = [k for k in np.flatnonzero(slides) if held[k].holder == holder]
-            check_gross_slip(problem, presses, np.array(own), [held[k] for k in own])
-        solution = solve_with_fallbacks(problem, closed)
-    return _state_after(contact, state, solution, free, fixed)
-
-
-def _state_after(contact, state, solution: CoulombSolution, free, fixed) -> StickSlipState:
-    """State at the end of the increment from a solution."""
-    x = contact.stack(solution.pressure, solution.shear)
-    motion = fixed.copy()
-    motion[free] = solution.motion
-    slip, point_slip = contact.weak_slip(x, motion), contact.point_slip(x, motion)
-    lost = contact.lost(solution.shear, slip - state.slip, point_slip - state.point_slip)
-    closed = np.where(solution.sticking, Status.STICK, Status.SLIP)
-    return replace(
-        state,
-        pressure=solution.pressure,
-        shear=solution.shear,
-        slip=slip,
-        motion=motion,
-        force=contact.modes.T @ x,
-        status=np.where(solution.pressure > 0, closed, Status.OPEN),
-        point_slip=point_slip,
-        dissipated=state.dissipated + lost,
-        iterations=solution.iterations,
-    )
-
-
-def _predicted_active(
-    problem: CoulombProblem, closed: np.ndarray, presses: np.ndarray
-) -> np.ndarray:
-    """Predicted active coefficients: the current ones, initially those without friction.
-
-    Without friction only the motions that press are free; a motion that closes no gap is not.
-    """
-    if np.any(closed):
-        return closed
-    m = len(closed)
-    presses = presses & np.any(problem.modes[:m] != 0.0, axis=0)
-    modes, force = problem.modes[:m, presses], problem.force[presses]
-    return solve_contact(problem.compliance[:m, :m], problem.offset[:m], modes, force).active
 
 
 def follow(

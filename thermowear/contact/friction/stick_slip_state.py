@@ -8,7 +8,6 @@ from enum import IntEnum
 import numpy as np
 
 from ...serialise import serialisable
-from ..operators.frictional_contact import FrictionalContact
 
 
 class Status(IntEnum):
@@ -42,8 +41,8 @@ class StickSlipState:
         Energy ``-∫ t ds`` dissipated at the points so far [J/m²]. Its integral is exactly that of
         the weak conditions, to which each coefficient contributes at least 0; values at points of
         stick zones scatter about zero as the slip does.
-    worn : ndarray, shape (n_wearing, m)
-        Coefficients of the worn depths so far [m].
+    worn : ndarray, shape (n_wearing, m_Ψ)
+        Coefficients of the worn profiles so far [m].
     iterations : int
         Newton iterations of the last increment.
     """
@@ -63,17 +62,6 @@ class StickSlipState:
     def not_sticking(self) -> np.ndarray:
         """True for coefficients that slipped or were open in the last increment, shape (m,)."""
         return self.status != Status.STICK
-
-
-def unloaded(contact: FrictionalContact, wearing: int = 0) -> StickSlipState:
-    """Unloaded initial state, for a number of wearing bodies."""
-    (n, m), k = contact.basis.shape, contact.modes.shape[1]
-    t = contact.directions
-    still, free = np.zeros(k), np.full(m, Status.OPEN)
-    coefficients, points, worn = np.zeros((m, t)), np.zeros((n, t)), np.zeros((wearing, m))
-    return StickSlipState(
-        np.zeros(m), coefficients, coefficients, still, still, free, points, np.zeros(n), worn
-    )
 
 
 @dataclass(frozen=True)

@@ -24,13 +24,12 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.linalg import block_diag
 
-from ...bulk.direct_solver import multiply
 from ...bulk.field import without_fixed
 from ...bulk.mechanics.elasticity import Elasticity
-from ...parallel import sum_over_ranks
 from ..search.pairing import Pairing
 from .edge_deflection import EdgeDeflection
 from .newton_matrix import NewtonMatrix
+from .nodal_equations import NodalEquations, bordered_step, held
 
 
 @dataclass(frozen=True)
@@ -110,7 +109,7 @@ class _Motions(NamedTuple):
     load: np.ndarray
 
 
-class ContactEquations:
+class ContactEquations(NodalEquations):
     """Residual and Newton steps of the equations in the module's docstring; collective calls.
 
     Parameters
@@ -142,7 +141,8 @@ class ContactEquations:
         stress: sp.csr_matrix | None = None,
         theta: int = 1,
     ):
-        self.elastic, self.pairing = elastic, pairing
+        super().__init__(elastic)
+        self.pairing = pairing
         self.modes, self.stiffness = modes, stiffness
         self.nitsche, self.theta = stress is not None, theta if stress is not None else 0
         self.weighted_force_modes = pairing.weights[:, None] * force_modes
@@ -150,8 +150,8 @@ class ContactEquations:
         if traction is trace and (theta == 1 or not self.nitsche):
             symmetry = "symmetric" if self.nitsche else "definite"
         self._scale = pairing.weights / stiffness
-        self._trace, self._traction = _held(elastic, trace), _held(elastic, traction)
-        self._stress = _held(elastic, 0 * trace if stress is None else stress)
+        self._trace, self._traction = held(elastic, trace), held(elastic, traction)
+        self._stress = held(elastic, 0 * trace if stress is None else stress)
         self._closing = (self._stress + self._trace.multiply(stiffness)).tocsr()
         self._work = (self.theta * self._stress + self._traction.multiply(stiffness)).tocsr()
         self._all = sp.hstack([self._closing, self._stress, self._work], format="csr").T
@@ -208,23 +208,15 @@ class ContactEquations:
         tension = np.where(active, residual.pressure, 0.0) - np.maximum(residual.pressure, 0.0)
         forces = residual.forces - self._work @ (self._scale * tension)
         balance = residual.balance + motions.weighted_force_modes.T @ tension
-        solved = factor.solve(np.column_stack([-forces, column]))
-        step, column = solved[:, 0], solved[:, 1:]
-        if motions.modes.shape[1] == 0:
-            return step, np.zeros(0)
         per_motion = pressing[:, None] * (self.stiffness[:, None] * motions.modes)
         row = -motions.weighted_force_modes.T * pressing
-        closing_response = self._sum(self._closing.T @ solved)
-        schur = (
-            motions.weighted_force_modes.T @ per_motion
-            + motions.springs
-            - row @ closing_response[:, 1:]
+        corner = motions.weighted_force_modes.T @ per_motion + motions.springs
+        return bordered_step(
+            factor,
+            (forces, column),
+            lambda solved: row @ self._sum(self._closing.T @ solved),
+            (balance, corner),
         )
-        size = np.sqrt(np.abs(np.diag(schur)))
-        if size.min() == 0.0 or np.linalg.cond(schur / np.outer(size, size)) > 1e12:
-            return None
-        motion = np.linalg.solve(schur, -balance - row @ closing_response[:, 0])
-        return step - column @ motion, motion
 
     def along(self, loading: Loading, residual: Residual, step: np.ndarray, motion: np.ndarray):
         """Arguments of `step_length`: work of the residual along a Newton step.
@@ -246,10 +238,6 @@ class ContactEquations:
         slope -= self.theta * (stress @ (self._scale * stress))
         return constant, slope, factors, residual.pressure, change
 
-    def elastic_forces(self, displacement: np.ndarray) -> np.ndarray:
-        """Elastic nodal forces K u, zero at supported degrees of freedom."""
-        return without_fixed(multiply(self.elastic.stiffness, displacement), self.elastic.fixed)
-
     def _motions(self, loading: Loading) -> _Motions:
         own, k = loading.deflection, len(loading.load)
         if own is None:
@@ -268,18 +256,3 @@ class ContactEquations:
     def _at_points(self, displacement: np.ndarray) -> np.ndarray:
         """Displacement mapped to the points: (S + γB) u, S u and (θS + γB_t) u, shape (3, n)."""
         return self._sum(self._all @ displacement).reshape(3, -1)
-
-    def _sum(self, values):
-        return sum_over_ranks(self.elastic.bodies.comm, values)
-
-    def _largest(self, *arrays: np.ndarray) -> float:
-        largest = np.max([np.abs(array).max(initial=0.0) for array in arrays])
-        return float(np.max(self.elastic.bodies.comm.allgather(largest)))
-
-
-def _held(elastic: Elasticity, matrix: sp.csr_matrix) -> sp.csr_matrix:
-    """Transposed trace without supported rows and without rounding noise."""
-    held = without_fixed(matrix, elastic.fixed)
-    held.data[np.abs(held.data) < 1e-14 * np.abs(held.data).max(initial=0.0)] = 0.0
-    held.eliminate_zeros()
-    return held

@@ -18,20 +18,24 @@ _DIFFERENT_PATTERN = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
 
 
 class NewtonMatrix:
-    """Matrix ``K - Sᵀ diag(b) S + W diag(a) C``, with factors a that vary from step to step.
+    """Matrix ``K - Sᵀ diag(b) S + W a C``, with factors a that vary from step to step.
 
     K is the supported stiffness. W and C are kept for all points, open or closed, so that sparsity
-    pattern and elimination order are computed only once. All methods are collective.
+    pattern and elimination order are computed only once. With several components of the tractions
+    the operators list those of all points one component after the other, and a couples the
+    components at each point. All methods are collective.
 
     Parameters
     ----------
     elastic : Elasticity
-    work, closing, stress : csr_matrix, shape (n_owned, n)
+    work, closing, stress : csr_matrix, shape (n_owned, components n)
         W, Cᵀ and Sᵀ, without supported rows.
-    subtracted : ndarray, shape (n,)
+    subtracted : ndarray, shape (components n,)
         Factors b.
     symmetry : str
         Symmetry as in `DirectSolver`.
+    components : int
+        Number of components of the tractions.
     """
 
     def __init__(
@@ -42,6 +46,7 @@ class NewtonMatrix:
         stress: sp.csr_matrix,
         subtracted: np.ndarray,
         symmetry: str,
+        components: int = 1,
     ):
         self._symmetry, self._dim, self._fixed = symmetry, elastic.bodies.dim, elastic.fixed
         self._border = elastic.joints.border(range(len(elastic.each)), slice(None))
@@ -53,7 +58,8 @@ class NewtonMatrix:
             fixed.axpy(-1.0, columns.matMult(rows), _DIFFERENT_PATTERN)
         self._columns = distributed(elastic.spaces, work)
         self._rows = distributed(elastic.spaces, closing).transpose()
-        self._weighted_rows = self._rows.copy()
+        self._coupling = _pointwise(components, work.shape[1] // components, self._rows.comm)
+        self._weighted_rows = self._coupling.matMult(self._rows)
         self._product = self._columns.matMult(self._weighted_rows)
         self._matrix = fixed.copy()
         self._matrix.axpy(1.0, self._product, _DIFFERENT_PATTERN)
@@ -64,7 +70,7 @@ class NewtonMatrix:
         self._factors = np.zeros(0)
 
     def factor(self, factors: np.ndarray) -> AnyFactor:
-        """Factorise the matrix for values of a, shape (n,).
+        """Factorise the matrix for values of a, shape (n,) or (components, components, n).
 
         Raises
         ------
@@ -73,8 +79,8 @@ class NewtonMatrix:
         """
         if self._factor is not None and np.array_equal(self._factors, factors):
             return self._factor
-        self._rows.copy(self._weighted_rows, _SAME_PATTERN)
-        _scale_rows(self._weighted_rows, factors)
+        _set_pointwise(self._coupling, factors if factors.ndim == 3 else factors[None, None])
+        self._coupling.matMult(self._rows, self._weighted_rows)
         self._columns.matMult(self._weighted_rows, self._product)
         self._constant.copy(self._matrix, _SAME_PATTERN)
         self._matrix.axpy(1.0, self._product, _SUBSET_PATTERN)
@@ -99,3 +105,24 @@ def _scale_rows(matrix: PETSc.Mat, factors: np.ndarray) -> None:
     first, last = scale.getOwnershipRange()
     scale.setArray(factors[first:last])
     matrix.diagonalScale(scale, None)
+
+
+def _pointwise(components: int, count: int, comm: PETSc.Comm) -> PETSc.Mat:
+    """Square matrix that couples the components at each of a number of points."""
+    size = components * count
+    matrix = PETSc.Mat().createAIJ(((PETSc.DECIDE, size),) * 2, nnz=components, comm=comm)
+    _set_pointwise(matrix, np.zeros((components, components, count)))
+    return matrix
+
+
+def _set_pointwise(matrix: PETSc.Mat, values: np.ndarray) -> None:
+    """Set the entries to values (components, components, n), replicated on all ranks."""
+    c, _, n = values.shape
+    first, last = matrix.getOwnershipRange()
+    rows = np.arange(first, last)
+    columns = np.arange(c) * n + (rows % n)[:, None]
+    starts = np.arange(0, c * len(rows) + 1, c)
+    entries = values.transpose(0, 2, 1).reshape(c * n, c)[first:last]
+    indices = (each.astype(PETSc.IntType) for each in (starts, columns.ravel()))
+    matrix.setValuesCSR(*indices, np.ascontiguousarray(entries.ravel()))
+    matrix.assemble()

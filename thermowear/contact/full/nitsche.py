@@ -35,18 +35,30 @@ _REGULARISATION = 1e-9
 
 
 def normal_traction(elastic: Elasticity, pairing: Pairing) -> sp.csr_matrix:
-    """Transposed normal traction Sᵀ of body 1: shape (n_owned, n_points). Every rank calls.
+    """Transposed normal traction Sᵀ of body 1, compression negative, see `face_traction`."""
+    return face_traction(elastic, pairing, pairing.normals)
 
-    ``S u = n·σ(u) n_1 / (n·n_1)`` of body 1 [Pa], compression negative, without the thermal part
-    (see `thermal_traction`): the traction on its own face, of normal n_1, along the normal of the
-    common face, whose area is smaller by ``n·n_1``. At points shared by two facets it is the mean
-    of both cells, weighted by their parts of the area, and converges like the interior stress.
+
+def face_traction(elastic: Elasticity, pairing: Pairing, directions: np.ndarray) -> sp.csr_matrix:
+    """Transposed traction Sᵀ of body 1 along directions e: (n_owned, n_points). Every rank calls.
+
+    ``S u = e·σ(u) n_1 / (n·n_1)`` of body 1 [Pa], without the thermal part (see
+    `thermal_traction`): the traction on its own face, of normal n_1, per area of the common face,
+    which is smaller by ``n·n_1``. At points shared by two facets it is the mean of both cells,
+    weighted by their parts of the area, and converges like the interior stress.
+
+    Parameters
+    ----------
+    elastic : Elasticity
+    pairing : Pairing
+    directions : ndarray, shape (n_points, gdim)
     """
     side, point, share = on_every_facet(pairing)
     index, dim = side.face.body, elastic.bodies.dim
     space = elastic.spaces.each[index]
     mine = np.flatnonzero(side.face.rank[side.facet] == elastic.bodies.comm.rank)
-    values = cell_traction(elastic.each[index], side, mine, pairing.normals[point[mine]])
+    along = pairing.normals[point[mine]], directions[point[mine]]
+    values = cell_traction(elastic.each[index], side, mine, *along)
     values *= share[mine, None, None]
     cells = side.face.cell[side.facet[mine]]
     rows = space.dofmap.list[cells].astype(np.int64)[..., None] * dim + np.arange(dim)
@@ -56,9 +68,13 @@ def normal_traction(elastic: Elasticity, pairing: Pairing) -> sp.csr_matrix:
 
 
 def cell_traction(
-    elastic: ElasticBody, side: PairedFace, chosen: np.ndarray, normals: np.ndarray
+    elastic: ElasticBody,
+    side: PairedFace,
+    chosen: np.ndarray,
+    normals: np.ndarray,
+    directions: np.ndarray,
 ) -> np.ndarray:
-    """Traction along normals per nodal displacement of the cell, shape (n, nodes, gdim) [Pa/m].
+    """Traction along directions per nodal displacement of the cell, shape (n, nodes, gdim) [Pa/m].
 
     Per area of the common face with these normals.
 
@@ -69,8 +85,8 @@ def cell_traction(
     side : PairedFace
     chosen : ndarray of int, shape (n,)
         Entries of the side, all in cells of this rank.
-    normals : ndarray, shape (n, gdim)
-        Normals of the common face.
+    normals, directions : ndarray, shape (n, gdim)
+        Normals of the common face, and directions e.
     """
     facet = side.facet[chosen]
     cells = side.face.cell[facet]
@@ -79,9 +95,10 @@ def cell_traction(
     reference = reference_points(side, chosen, kind)
     _, slopes, divergence = displacement_slopes(elastic, cells, reference)
     λ, μ = (cell_values(function, cells)[:, None, None] for function in elastic.lame[:2])
-    along, outward = (np.einsum("nai,ni->na", slopes, v)[..., None] for v in (normals, own))
-    sheared = outward * normals[:, None] + along * own[:, None]
-    return λ * divergence + μ * sheared / np.einsum("ni,ni->n", normals, own)[:, None, None]
+    along, outward = (np.einsum("nai,ni->na", slopes, v)[..., None] for v in (directions, own))
+    area, across = (np.einsum("ni,ni->n", v, own) for v in (normals, directions))
+    sheared = outward * directions[:, None] + along * own[:, None]
+    return λ * divergence * (across / area)[:, None, None] + μ * sheared / area[:, None, None]
 
 
 def thermal_traction(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
@@ -212,7 +229,8 @@ def stability_limit(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
     for facet in np.unique(side.facet):
         if side.face.rank[facet] == elastic.bodies.comm.rank:
             chosen = np.flatnonzero(side.facet == facet)
-            traction = cell_traction(body, side, chosen, pairing.normals[point[chosen]])
+            normals = pairing.normals[point[chosen]]
+            traction = cell_traction(body, side, chosen, normals, normals)
             traction *= np.sqrt(pairing.weights[point] * share)[chosen, None, None]
             stiffness = _cell_stiffness(body, side.face.cell[facet])
             traction = traction.reshape(len(chosen), -1)

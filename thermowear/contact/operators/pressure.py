@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -52,7 +53,7 @@ class PressureSpace:
         """Coefficients of the L² projection of values at the points, by columns."""
         return np.linalg.solve(self.mass, self.weighted.T @ values)
 
-    @property
+    @cached_property
     def mass(self) -> np.ndarray:
         """Matrix ``Ψᵀ w Ψ``, shape (m, m)."""
         return dense(self.weighted.T @ self.basis)

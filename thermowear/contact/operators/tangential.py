@@ -1,4 +1,4 @@
-"""Condensation of the elastic bodies to pressure and shear at the contact.
+"""Tangential directions at the contact, and rigid motions of holders along them.
 
 Sign convention: that of `pairing`, and for the tangential direction
 ---------------------------------------------------------------------
@@ -23,30 +23,39 @@ one block per tangential direction, one in the plane. In weak form,
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse as sp
 
-from ...bulk.mechanics.elasticity import Elasticity
 from ...laws.motions import RigidMotion
-from ...parallel import sum_over_ranks
 from ..faces.tangent_frame import TangentFrame, frame_in_space
 from ..search.contacts import Contacts
 from ..search.pairing import Pairing
-from .frictional_contact import (
-    FrictionalContact,
-    HeldMotion,
-    SurfaceContact,
-    frictional_contact,
-    weak,
-)
-from .pressure import Basis, dense, scaled
 from .rigid_motion import RigidMode, hold
-from .thermal_opening import elastic_columns
-from .traces import vector_trace
 
 _NOISE = 1e-9
 """Travel per unit of a motion, relative to the motion, below which it is rounding noise."""
+
+
+@dataclass(frozen=True)
+class HeldMotion:
+    """Motion of a holder, free or given.
+
+    Attributes
+    ----------
+    motion : RigidMotion
+    bodies : tuple of int
+        Indices of the bodies that move.
+    role : str
+        ``"press"`` along the load direction, ``"slide"`` across it, ``"other"``.
+    holder : str
+        Subject of messages about it.
+    """
+
+    motion: RigidMotion
+    bodies: tuple[int, ...] = (0,)
+    role: str = "other"
+    holder: str = "contact: body 1"
 
 
 def tangents(normals: np.ndarray) -> np.ndarray:
@@ -135,72 +144,17 @@ def _middle(pairing: Pairing) -> tuple[np.ndarray, np.ndarray]:
     return middle, along if onwards >= 0.0 else -along
 
 
-def condense_tangential(
-    elastic: Elasticity,
-    contacts: Contacts,
-    basis: Basis,
-    held: Sequence[HeldMotion],
-    frame: np.ndarray | None = None,
-) -> FrictionalContact:
-    """Condense elasticity to pressure and shear. Every rank calls.
-
-    Parameters
-    ----------
-    elastic : Elasticity
-    contacts : Contacts
-    basis : ndarray or csr_array, shape (n, m)
-        Ψ, from `pressure.pressure_basis`.
-    held : sequence of HeldMotion
-        Motions of the holders.
-    frame : ndarray, shape (t, n, gdim), optional
-        Tangential directions, see `tangential_frame`.
-
-    Raises
-    ------
-    ComputationError
-        If the elastic problem cannot be solved.
-    """
-    frame = tangential_frame(contacts) if frame is None else frame
-    traces = [vector_trace(elastic.spaces, contacts, e) for e in _measured(contacts, frame)]
-    along = np.stack([travel(contacts, each) for each in held], axis=-1)
-    rigid = closure(contacts, held, frame)
-    if contacts.in_space:
-        weighted = scaled(contacts.weights, basis)
-        compliance = _compliance(elastic, traces, weighted)
-        modes = weak(weighted, rigid)
-        operators = contacts.gap, rigid, compliance, modes, along, tuple(held)
-        return SurfaceContact(basis, weighted, *operators)
-    basis = dense(basis)
-    sparse = sp.csr_matrix(scaled(contacts.weights, basis))
-    influence = elastic.solve(sp.hstack([trace @ sparse for trace in traces], format="csr"))
-    comm = elastic.bodies.comm
-    response = sum_over_ranks(comm, np.array([trace.T @ influence for trace in traces]))
-    return frictional_contact(
-        basis, contacts.weights, contacts.gap, response, rigid, along, held, influence
-    )
-
-
-def _compliance(elastic: Elasticity, traces: list[sp.csr_matrix], weighted: Basis) -> np.ndarray:
-    """Compliance A, shape (M, M), from blocks of columns of which nothing is kept. Collective."""
-    sparse, spaces = sp.csr_matrix(weighted), elastic.spaces
-    loads = sp.hstack([trace @ sparse for trace in traces], format="csr")
-    touching = np.flatnonzero(np.diff(loads.indptr))
-    body = np.searchsorted(spaces.starts, touching, side="right") - 1
-    near, result = loads[touching], np.zeros((loads.shape[1],) * 2)
-    for found in elastic_columns(elastic, loads.tocsc()):
-        inside = np.flatnonzero(np.isin(body, spaces.groups[found.group]))
-        rows = spaces.within(found.group, touching[inside])
-        result[:, found.columns] += near[inside].T @ found.displacements[rows]
-    result = sum_over_ranks(elastic.bodies.comm, result)
-    return (result + result.T) / 2
-
-
 def closure(contacts: Contacts, held: Sequence[HeldMotion], frame: np.ndarray) -> np.ndarray:
     """Matrix R at the points, shape (1 + t, n, k), see `FrictionalContact`."""
     modes = [RigidMode(each.motion, amplitude=0.0, bodies=each.bodies) for each in held]
-    return np.array([hold(contacts, e, modes).force_response for e in _measured(contacts, frame)])
+    return np.array([hold(contacts, e, modes).force_response for e in measured(contacts, frame)])
 
 
-def _measured(contacts: Contacts, frame: np.ndarray) -> list[np.ndarray]:
+def measured(contacts: Contacts, frame: np.ndarray) -> list[np.ndarray]:
     """Directions of gap and slips: the normals, and the reversed tangential directions."""
     return [contacts.normals, *-frame]
+
+
+def weak(weighted, rigid: np.ndarray) -> np.ndarray:
+    """Weak modes, shape (M, k), of a matrix R at the points, shape (1 + t, n, k)."""
+    return np.concatenate([weighted.T @ component for component in rigid])

@@ -43,7 +43,8 @@ class FrettingHistory(AnalysisHistory[Increment]):
 
     def __init__(self, system: System, settings: FrettingAnalysis, observer: Observer):
         super().__init__(system, settings, observer)
-        self._path, self._repeats = FrettingPath(system, settings), settings.cycles > 1
+        self._path = FrettingPath(system, settings, observer.note)
+        self._repeats = settings.cycles > 1
         begin, turn = self._path.cycle_of_history or (0.0, np.inf)
         self._duration = turn - begin
         self._cycle: list[Increment] = []  # increments of the current cycle, and that before it
@@ -75,7 +76,7 @@ class FrettingHistory(AnalysisHistory[Increment]):
         return rows
 
     def _state(self, increment: Increment) -> FrettingState:
-        return FrettingState(self._system, increment, self._path.frame)
+        return FrettingState(self._system, increment, self._path.frame, self._path.basis)
 
     def may_restart(self, state: Increment) -> bool:
         """True at the end of a jump and, before cycle 1, of a segment."""
@@ -101,7 +102,7 @@ class FrettingHistory(AnalysisHistory[Increment]):
         rates = self._per_cycle / self._duration
         contact = contact_state(system, at.pressure, at.shear_vectors)
         found = snapshot(system, contact, moved, at.depths, rates)
-        gap = found.interface.gap + system.basis @ self._slid_along(state)
+        gap = found.interface.gap + self._path.basis @ self._slid_along(state)
         interface = replace(found.interface, gap=gap)
         return replace(found, interface=interface, friction=at.friction)
 
@@ -143,7 +144,10 @@ class FrettingHistory(AnalysisHistory[Increment]):
 
     def _slid_along(self, increment: Increment) -> np.ndarray:
         """Gap change of the worn profiles by the slip of the first bodies, coefficients [m]."""
-        state, zeros = increment.state, np.zeros(self._system.basis.shape[1])
-        travel = self._path.travel(state)
-        pairs = zip(self._path.profiles, state.worn, strict=True)
-        return sum((own.interpolation(travel) @ ω - ω for own, ω in pairs), start=zeros)
+        worn, profiles = increment.state.worn, self._path.profiles
+        moved, still = self._path.travel(increment.state), 0 * self._path.travel(increment.state)
+        parts = (
+            (own.interpolation(moved) - own.interpolation(still)) @ depth
+            for own, depth in zip(profiles, worn, strict=True)
+        )
+        return sum(parts, start=np.zeros(self._path.basis.shape[1]))

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
 
+from ...contact.friction.frictional_contact import unloaded
 from ...contact.friction.slip_wear import SlipWear, worn_profiles
 from ...contact.friction.stick_slip import advance, follow
-from ...contact.friction.stick_slip_state import StickSlipState, unloaded
-from ...contact.operators.frictional_contact import weak
-from ...contact.operators.pressure import function_ranges
-from ...contact.operators.tangential import closure, condense_tangential, tangential_frame
+from ...contact.friction.stick_slip_state import StickSlipState
+from ...contact.operators.pressure import function_ranges, scaled
+from ...contact.operators.tangential import closure, tangential_frame, weak
 from ...errors import CaseError
 from ...model.analyses import FrettingAnalysis
 from ..system.joint_wear import JointWear
 from ..system.system import System
 from .cycle_jump import adaptive_jumps, fixed_jumps
+from .friction_method import frictional_contact_of
 from .held_loads import HeldLoads
 from .load_path import Increment, LoadPath, LoadSegment, RestartPoint
 
@@ -33,6 +34,8 @@ class FrettingPath:
     ----------
     system : System
     settings : FrettingAnalysis
+    note : callable, optional
+        Receives a warning about parameters of the contact method out of range.
 
     Attributes
     ----------
@@ -40,9 +43,11 @@ class FrettingPath:
         Holders with their motions and loads.
     cycle_of_history : tuple of float or None
         Start and end of the repeated part of the load histories [s].
-    profiles : tuple of WornProfiles
+    profiles : tuple of WornProfiles or ProfilesAtPoints
         Worn profiles of the wearing faces.
-    areas : ndarray, shape (m,)
+    basis : ndarray or csr_array, shape (n, m)
+        Basis of the tractions.
+    areas : ndarray, shape (m_Ψ,)
         Areas of the basis functions of the depths [m²].
     frame : ndarray, shape (t, n, gdim)
         Tangential directions at the contact points.
@@ -53,7 +58,12 @@ class FrettingPath:
         If no holder has a load history, or nothing resists a motion of the holders.
     """
 
-    def __init__(self, system: System, settings: FrettingAnalysis):
+    def __init__(
+        self,
+        system: System,
+        settings: FrettingAnalysis,
+        note: Callable[[str], None] | None = None,
+    ):
         if system.slides is not None:
             raise CaseError(
                 "motions: not supported in a fretting analysis; holders move the bodies"
@@ -64,18 +74,19 @@ class FrettingPath:
         self.cycle_of_history = history.cycle
         poles = np.array([system.load_directions[own.start] for own in contacts.ranges])
         self.frame = tangential_frame(contacts, poles)
-        with system.phases("condense elasticity"):
-            self._contact = condense_tangential(
-                system.elastic, contacts, system.basis, self.loads.held, self.frame
-            )
+        self._contact = frictional_contact_of(system, self.loads.held, self.frame, note)
+        self.basis = self._contact.basis
         self._require_support()
-        weighted, self.areas = self._contact.weighted, self._contact.areas
+        weighted, depths = self._contact.weighted, scaled(system.weights, system.basis)
+        self.areas = np.asarray(depths.sum(axis=0)).ravel()
         counts = [own.stop - own.start for own in function_ranges(contacts, weighted)]
         each = [interface.nominal_friction for interface in system.model.interfaces]
         self._friction = np.repeat(each, counts)
         wear = JointWear(system.model, contacts)
         self._laws = tuple(wear.laws_of(counts).values())
-        self.profiles = tuple(worn_profiles(contacts, weighted, side) for side in system.laws)
+        self.profiles = tuple(
+            self._contact.seen(worn_profiles(contacts, depths, side)) for side in system.laws
+        )
         self._reactions = weak(weighted, closure(contacts, self.loads.reactions, self.frame))
 
     def _require_support(self) -> None:
@@ -112,7 +123,8 @@ class FrettingPath:
 
         Either all increments, or the ones after an increment with a restart point.
         """
-        restart, passed = RestartPoint(0, unloaded(self._contact, len(self._laws))), -math.inf
+        start = unloaded(self._contact, len(self._laws), len(self.areas))
+        restart, passed = RestartPoint(0, start), -math.inf
         if last is not None:
             assert last.restart is not None
             restart, passed = last.restart, last.segment.end

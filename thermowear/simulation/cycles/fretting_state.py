@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from ...contact.friction.stick_slip_state import Status
+from ...contact.operators.pressure import Basis
 from ...contact.operators.tangential import forwards, tangents
 from ...laws.motions import spatial
 from ...results import FrictionInterface
@@ -27,21 +28,24 @@ class FrettingState:
     increment : Increment
     frame : ndarray, shape (t, n, gdim)
         Tangential directions at the points.
+    basis : ndarray or csr_array, shape (n, m)
+        Basis of the tractions.
     """
 
     system: System
     increment: Increment
     frame: np.ndarray
+    basis: Basis
 
     @cached_property
     def pressure(self) -> np.ndarray:
         """Pressure, shape (n,) [Pa]."""
-        return self.system.basis @ self.increment.state.pressure
+        return self.basis @ self.increment.state.pressure
 
     @cached_property
     def shear(self) -> np.ndarray:
         """Components of the shear traction on the first bodies, shape (n, t) [Pa]."""
-        return self.system.basis @ self.increment.state.shear
+        return self.basis @ self.increment.state.shear
 
     @property
     def shear_vectors(self) -> np.ndarray:
@@ -60,7 +64,7 @@ class FrettingState:
         shear between coefficients that slip in different directions is below the limit, too.
         """
         if self.in_space:
-            status, basis = self.increment.state.status, self.system.basis
+            status, basis = self.increment.state.status, self.basis
             stick, slip = (basis @ (status == each) for each in (Status.STICK, Status.SLIP))
             return (stick > slip) & (self.pressure > 0)
         return np.abs(self.shear[:, 0]) < _SLIDES * self.system.friction * self.pressure

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ...contact.friction.stick_slip_state import Loads
-from ...contact.operators.frictional_contact import HeldMotion
+from ...contact.operators.tangential import HeldMotion
 from ...errors import CaseError
 from ...laws.motions import RigidMotion, combined, rotation, translation
 from ...laws.time_course import TANGENTIAL, LoadHistories

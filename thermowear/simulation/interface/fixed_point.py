@@ -9,11 +9,10 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ...contact.operators.heat import ThermalState
+from ...contact.solvers.anderson import AndersonMixing
 from ...errors import ComputationError
 from ..system.conditions import ConditionModel, InterfaceConditions
 
-_REMEMBERED = 6
-"""Number of iterates of Anderson mixing."""
 _DAMPED = 0.5
 _NEAR = 0.05
 """Relative residual below which iterates are mixed; above it, that may lead to another state."""
@@ -23,27 +22,6 @@ _LEAST_RISE = 1.0  # K
 
 Found = TypeVar("Found", bound=Any)
 """State with the `pressure`, `faces` and `worn` that interface conditions depend on."""
-
-
-class AndersonMixing:
-    """Anderson mixing of the last iterates, without damping.
-
-    Walker and Ni, SIAM J. Numer. Anal. 49 (2011) 1715.
-    """
-
-    def __init__(self) -> None:
-        self._iterates: list[np.ndarray] = []
-        self._residuals: list[np.ndarray] = []
-
-    def next(self, iterate: np.ndarray, residual: np.ndarray) -> np.ndarray:
-        """Next iterate from the present one and its residual (image minus iterate), shape (k,)."""
-        self._iterates = [*self._iterates, iterate][-_REMEMBERED:]
-        self._residuals = [*self._residuals, residual][-_REMEMBERED:]
-        if len(self._iterates) == 1:
-            return iterate + residual
-        Δx, Δr = np.diff(self._iterates, axis=0).T, np.diff(self._residuals, axis=0).T
-        weights = np.linalg.lstsq(Δr, residual, rcond=1e-12)[0]
-        return iterate + residual - (Δx + Δr) @ weights
 
 
 @dataclass(frozen=True)

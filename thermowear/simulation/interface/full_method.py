@@ -17,13 +17,13 @@ from ...contact.full.nitsche import (
     stability_limit,
     thermal_traction,
 )
+from ...contact.solvers.anderson import AndersonMixing
 from ...contact.wear.implicit_step import WearRates
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
 from ..system.setup_cache import SetupCache
 from ..system.system import System
 from .contact_solver import ContactSolution
-from .fixed_point import AndersonMixing
 
 _ITERATIONS = 60
 _TOLERANCE = 1e-9  # of the largest pressure
@@ -124,27 +124,33 @@ class FullMethod:
 def _full_contact(system: System, note: Callable[[str], None] | None) -> FullContact:
     """Contact equations of a system; a note tells if its parameters are out of range."""
     settings, holder = system.model.interface.method, system.holder
-    elastic, pairing = system.elastic, system.pairing
-    stress = None
+    nitsche = settings.name == "nitsche"
+    return FullContact(
+        system.elastic,
+        system.pairing,
+        system.trace,
+        system.traction,
+        holder.modes,
+        holder.force_modes,
+        contact_stiffness(system, note),
+        normal_traction(system.elastic, system.pairing) if nitsche else None,
+        settings.theta,
+    )
+
+
+def contact_stiffness(system: System, note: Callable[[str], None] | None) -> np.ndarray:
+    """Stiffness γ of the penalty method or of Nitsche's, shape (n,) [Pa/m].
+
+    A note tells if it is out of range. Every rank calls.
+    """
+    settings, elastic, pairing = system.model.interface.method, system.elastic, system.pairing
     if settings.name == "nitsche":
-        stress = normal_traction(elastic, pairing)
         gamma = () if settings.gamma is None else (settings.gamma,)
         stiffness = nitsche_stiffness(elastic, pairing, *gamma)
         warning = nitsche_warning(stiffness, stability_limit(elastic, pairing), settings.theta)
         if note is not None and warning is not None:
             note(warning)
-    elif settings.penalty is not None:
-        stiffness = np.full(len(pairing.weights), settings.penalty)
-    else:
-        stiffness = default_penalty(elastic, pairing)
-    return FullContact(
-        elastic,
-        pairing,
-        system.trace,
-        system.traction,
-        holder.modes,
-        holder.force_modes,
-        stiffness,
-        stress,
-        settings.theta,
-    )
+        return stiffness
+    if settings.penalty is not None:
+        return np.full(len(pairing.weights), settings.penalty)
+    return default_penalty(elastic, pairing)

@@ -190,6 +190,7 @@ def rubbed(
     elements: int,
     wear: dict[str, Any] | None = None,
     increments: int = 8,
+    method: str = "condensed",
 ) -> tuple[InterfaceFields, FrictionHistory]:
     """Interface at the end and history of fretting of the sphere, an instant a second."""
     times = [f"{t} s" for t in range(len(next(iter(history.values()))))]
@@ -203,7 +204,7 @@ def rubbed(
         "mesh": {"degree": 2, "elements": elements, "grading": 0.5},
         "bodies": {"sphere": steel, "block": {"like": "sphere"}},
         "load": {"force": f"{force} N", "history": {"time": times} | history},
-        "contact": {"friction": FRICTION},
+        "contact": {"friction": FRICTION, "method": method},
         "wear": wear or {},
         "analysis": {"type": "fretting", "output_times": ["1 s"], "increments": increments},
     }

@@ -6,6 +6,10 @@ import numpy as np
 import pytest
 
 from thermowear.errors import CaseError
+from thermowear.simulation.analyses.run import run
+from thermowear.simulation.from_case.analysis import analysis_of, model_of
+from thermowear.simulation.interface import growing_edge
+from thermowear.simulation.runtime.observer import Observer
 from thermowear.verification.check import computed, starter
 
 RADIUS, ANGLE, FORCE, SPEED, RATE = 14e-3, math.radians(75.0), 500.0, 1.6, 1e-15
@@ -23,6 +27,16 @@ def case(*overrides):
     return starter(
         "ball-in-socket", wear, 'load={force="500 N"}', *overrides, without=("wear", "analysis")
     )
+
+
+class Listener(Observer):
+    """Notes of a run."""
+
+    def __init__(self):
+        self.notes = []
+
+    def note(self, text):
+        self.notes.append(text)
 
 
 def about(direction, *more):
@@ -109,3 +123,22 @@ def test_an_axis_needs_a_model_in_space():
     """requirement: sections know only rotations about their own axis or centre."""
     with pytest.raises(CaseError, match=r"motion\.axis: requires a 3d model"):
         starter("annular-punch", *about('"y"'))
+
+
+def test_many_points_at_the_edge_of_the_wear(monkeypatch):
+    """requirement: beyond a number of points, contact at the edge is weak, with one note.
+
+    Wear is hardly less accurate: both volumes differ by less than 1 %.
+    """
+    running = (
+        'analysis={type="transient", end_time="3e5 s", tolerance=1e-2}',
+        "mesh.elements=8",
+    )
+    pointwise = computed(case(*running))
+    monkeypatch.setattr(growing_edge, "_MOST_POINTS", 10)
+    listener, given = Listener(), case(*running)
+    weak = run(model_of(given), analysis_of(given), observer=listener)
+    assert sum("weak there" in text for text in listener.notes) == 1
+    volumes = [found.summary["wear_volume_2_m3"] for found in (pointwise, weak)]
+    assert volumes[0] == pytest.approx(volumes[1], rel=1e-2)
+    assert volumes[0] != volumes[1]

@@ -188,7 +188,7 @@ class OuterLoop:
         if worn is None and zone == unworn.zone:
             return
         system = build(unworn.model, unworn.comm, unworn.phases, zone, SetupCache(), worn)
-        self.now = self._period(interface_problem(system))
+        self.now = self._period(interface_problem(system, self._observer.note))
 
     def moments(self, last: Moment | None = None) -> Iterator[Moment]:
         """Accepted moments, see `time_loop.moments`."""

@@ -17,6 +17,8 @@ difference of the largest pressures, at any points.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ...contact.wear.implicit_step import WearRates
@@ -28,6 +30,13 @@ from .sdirk import InterfaceState
 
 _RISE = 0.1
 """Fraction of the rise of the largest pressure in a step that counts as its error."""
+_MOST_POINTS = 3000
+"""Largest number of points with pointwise contact: their matrices are dense."""
+_WEAK = (
+    f"more than {_MOST_POINTS} contact points lie at the edge of the wear: contact is weak there, "
+    "and the pressure at the edge less accurate; faces whose nodes lie opposite each other have "
+    "fewer points"
+)
 _DELAY = 0.03
 """Delay of the end of a step behind the expected time of reaching a point, relative to the step."""
 _STEP_AFTER_CONTACT = 0.4
@@ -43,8 +52,14 @@ class GrowingEdge:
     wear : InterfaceWear
     """
 
-    def __init__(self, system: System, method: ContactSolver, wear: InterfaceWear):
-        self.method, self.wear = method, wear
+    def __init__(
+        self,
+        system: System,
+        method: ContactSolver,
+        wear: InterfaceWear,
+        note: Callable[[str], None] | None,
+    ):
+        self.method, self.wear, self._note = method, wear, note
         self._facet, self._basis = system.contacts.facet, system.basis
         self._weights = system.weights
 
@@ -80,6 +95,11 @@ class GrowingEdge:
         if before is not None:
             assert pressure is not None
             points |= before & rough_points(self._facet, self._basis, self._weights, pressure)
+        if np.count_nonzero(points) > _MOST_POINTS:
+            if self._note is not None:
+                self._note(_WEAK)
+            self._note = None  # once
+            return None
         return points if points.any() else None
 
     def difference(

@@ -39,12 +39,18 @@ class InterfaceProblem(WearProblem):
         True if conduction is transient.
     """
 
-    def __init__(self, system: System, method: ContactSolver, heat: FrictionHeat | None):
+    def __init__(
+        self,
+        system: System,
+        method: ContactSolver,
+        heat: FrictionHeat | None,
+        note: Callable[[str], None] | None = None,
+    ):
         self.system, self._method, self.heat = system, method, heat
         self._condition_model = ConditionModel(system)
         self._last_conditions: tuple[bytes, InterfaceConditions] | None = None
         self._wear = InterfaceWear(system)
-        self._edge = GrowingEdge(system, method, self._wear)
+        self._edge = GrowingEdge(system, method, self._wear, note)
         self._limit: SteadyLimit | None = None
         self._gap, n = system.contacts.gap - system.holder.imposed, len(system.weights)
         self._softness, self._rigid = system.softness, Slope.diagonal(np.zeros(n))
@@ -289,12 +295,12 @@ def interface_problem(
     ----------
     system : System
     note : callable, optional
-        Called with a warning about settings that may impair the solution.
+        Called with a warning about what may impair the solution.
     """
     own = {"condensed": CondensedMethod, "pointwise": PointwiseMethod}
     method = own.get(system.model.method)
     if method is not None:
-        return InterfaceProblem(system, method(system), friction_heat(system))
+        return InterfaceProblem(system, method(system), friction_heat(system), note)
     with system.phases("contact operators"):
         full = FullMethod(system, note)
-    return InterfaceProblem(system, full, friction_heat(system))
+    return InterfaceProblem(system, full, friction_heat(system), note)

@@ -30,7 +30,7 @@ def with_accurate_mesh(
     """Case with a mesh of the accuracy it asks for; itself where it asks for none.
 
     Keys of the mesh that the case gives are kept; the analysis is run on one mesh after the other.
-    Of a mesh file only the degree is chosen. Every rank calls.
+    Of a mesh file, and of bodies from CAD, only the degree is chosen. Every rank calls.
 
     Raises
     ------
@@ -45,13 +45,13 @@ def with_accurate_mesh(
     if not chosen:
         observer.note("mesh.accuracy: the mesh is kept, as all keys that it could choose are given")
         return case
-    trials = Trials(case, MPI.COMM_WORLD if comm is None else comm)
+    trials = Trials(case, chosen, MPI.COMM_WORLD if comm is None else comm)
     search = MeshSearch(trials.evaluate, *changes(chosen), case.mesh.accuracy)
     with (phases or Phases(observer.phase))("mesh search"):
         best = search.best(trials.start())
     if best is None:
         raise trials.failures[-1]
-    observer.note(_found(search, best))
+    observer.note(_found(search, best, chosen) + _kept(case))
     return trials.on(best.mesh)
 
 
@@ -62,18 +62,21 @@ class Trials:
     Attributes
     ----------
     case : AnyCase
+    chosen : set of str
+        Keys of the mesh that are chosen.
     comm : mpi4py.MPI.Comm
     failures : list of CaseError or ComputationError
         Reasons for meshes without a result.
     """
 
     case: AnyCase
+    chosen: set[str]
     comm: MPI.Comm
     failures: list[CaseError | ComputationError] = field(default_factory=list)
 
     def start(self) -> MeshSize:
-        """Coarse mesh with the keys that the case gives."""
-        kept = self.case.mesh.model_fields_set & MeshTable.CHOSEN
+        """Coarse mesh with the keys that are kept."""
+        kept = MeshTable.CHOSEN - self.chosen
         return MeshSize(**{key: getattr(self.case.mesh, key) for key in kept})
 
     def on(self, size: MeshSize) -> AnyCase:
@@ -94,14 +97,22 @@ class Trials:
 
 def _chosen(case: AnyCase) -> set[str]:
     """Keys of the mesh that are chosen."""
-    changed = {"degree"} if case.geometry.from_file else set(_KEYS)
+    made = not (case.geometry.from_file or case.geometry.sized)
+    changed = set(_KEYS) if made else {"degree"}
     return changed - case.mesh.model_fields_set
 
 
-def _found(search: MeshSearch[MeshSize], best: MeshTrial[MeshSize]) -> str:
+def _kept(case: AnyCase) -> str:
+    """Addition to the note, on keys of the mesh that are not chosen."""
+    if not case.geometry.sized:
+        return ""
+    return "; mesh.size, mesh.contact_size and mesh.grading of bodies from CAD are kept"
+
+
+def _found(search: MeshSearch[MeshSize], best: MeshTrial[MeshSize], chosen: set[str]) -> str:
     """Note on the mesh that was found, and on what it does not reach."""
     size, error = best.mesh, search.error(best)
-    keys = ", ".join(f"mesh.{key} = {getattr(size, key):g}" for key in _KEYS)
+    keys = ", ".join(f"mesh.{key} = {getattr(size, key):g}" for key in _KEYS if key in chosen)
     text = (
         f"mesh.accuracy: {keys} after {len(search.trials)} meshes; {best.unknowns} unknowns, "
         f"estimated error {100 * error:.2g} %"

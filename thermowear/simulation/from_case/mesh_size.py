@@ -15,7 +15,7 @@ _GRADINGS = (0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 1.0)
 class MeshSize:
     """Keys of ``mesh`` that an accuracy stands for, see `MeshTable`."""
 
-    degree: int = 2
+    degree: int = 1
     elements: int = 4
     grading: float = 0.5
 

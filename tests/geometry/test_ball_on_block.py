@@ -14,7 +14,7 @@ from thermowear.case.tables.schema import MeshTable
 from thermowear.contact.faces.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError
-from thermowear.geometry.geometries.ball_on_block import BallOnBlock
+from thermowear.geometry.geometries.balls.ball_on_block import BallOnBlock
 from thermowear.geometry.mesh.tagged import scaled_jacobians
 
 from .test_pin_on_disk import measured

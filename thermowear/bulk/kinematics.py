@@ -204,12 +204,14 @@ class PlaneStress(PlaneStrain):
 class Spatial(Kinematics):
     """Three-dimensional solids; coordinates (x, y, z).
 
-    Body 1 slides along x, or body 2 rotates about a vertical axis.
+    Body 1 slides along x or turns about an axis, or body 2 rotates about a vertical axis.
     """
 
     name = "3d"
 
     def sliding(self, points, motion, center=None, across=False):
+        if motion.axis is not None:
+            return motion.axis.velocity(points, motion.angular_velocity)
         return _along_or_round(points, motion, center)
 
     def depth(self, x):

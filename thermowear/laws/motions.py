@@ -43,6 +43,41 @@ class RigidMotion:
         return moved[..., : points.shape[-1]]
 
 
+@dataclass(frozen=True)
+class TurningAxis:
+    """Axis in space that a body turns about in place, as a ball in its socket.
+
+    Attributes
+    ----------
+    point : tuple of float
+        A point of it [m].
+    direction : tuple of float
+        Unit vector; the sense of rotation follows by the right-hand rule.
+    """
+
+    point: tuple[float, float, float]
+    direction: tuple[float, float, float]
+
+    def velocity(self, points: np.ndarray, angular_velocity: float) -> np.ndarray:
+        """Velocity of points that turn about it, shape (n, 3) [m/s]."""
+        return angular_velocity * rotation(self.direction, self.point).at(points)
+
+
+def axis_of(point, direction) -> TurningAxis:
+    """Axis through a point (three components) [m] along a vector of any length.
+
+    Raises
+    ------
+    ValueError
+        If the vector has no direction.
+    """
+    length = float(np.linalg.norm(direction))
+    if not 0.0 < length < np.inf:
+        raise ValueError("the vector has no direction")
+    (px, py, pz), (x, y, z) = map(float, point), (float(d) / length for d in direction)
+    return TurningAxis((px, py, pz), (x, y, z))
+
+
 def translation(direction) -> RigidMotion:
     """Unit translation along a direction of two or three components."""
     return RigidMotion(spatial(direction), np.zeros(3), np.zeros(3))

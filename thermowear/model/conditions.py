@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from ..laws.motions import spans
+from ..laws.motions import TurningAxis, spans
 from ..laws.time_course import LoadHistory, TimeFunction
 
 
@@ -89,10 +89,12 @@ class Motion:
     velocity : float or None
         Velocity of body 1 relative to body 2 along x, or across a section [m/s].
     angular_velocity : float or None
-        Rotation of body 1 about the axis of an axisymmetric model; of body 2 about the centre,
-        anticlockwise, in other models [rad/s].
+        Rotation of body 1 about the axis of an axisymmetric model or the given one; else of body 2
+        about the centre, anticlockwise [rad/s].
     center : tuple of float or None
         Centre of rotation of body 2 in the section; None: it moves along x [m].
+    axis : TurningAxis or None
+        Axis in space that body 1 turns about in place, over body 2 at rest.
     across : bool
         True if body 1 slides normal to a plane section instead of along x.
     passes : bool
@@ -104,6 +106,7 @@ class Motion:
     velocity: float | None = None
     angular_velocity: float | None = None
     center: tuple[float, float] | None = None
+    axis: TurningAxis | None = None
     across: bool = False
     passes: bool = False
     history: TimeFunction | None = None

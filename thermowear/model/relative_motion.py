@@ -15,7 +15,7 @@ def relative_motion(first: Motion | None, second: Motion | None, axisymmetric: b
     ----------
     first, second : Motion or None
         Motions of the bodies: along x, across a section, about the axis of an axisymmetric model,
-        or anticlockwise about a centre. None: at rest.
+        anticlockwise about a centre, or about an axis in space in place. None: at rest.
     axisymmetric : bool
 
     Raises
@@ -32,6 +32,10 @@ def relative_motion(first: Motion | None, second: Motion | None, axisymmetric: b
         )
         assert found is not None
         return found
+    if first.axis is not None or second.axis is not None:
+        raise CaseError(
+            "motions: a body that turns about an axis in place must slide on one at rest"
+        )
     one, other = _moving(first, axisymmetric), _over_moving(second, axisymmetric)
     turn = one.angular_velocity is not None, other.angular_velocity is not None
     if turn[0] != turn[1] or one.across != other.across or one.history != other.history:
@@ -48,6 +52,8 @@ def relative_motion(first: Motion | None, second: Motion | None, axisymmetric: b
 
 def _moving(motion: Motion, axisymmetric: bool) -> Motion:
     """Motion of the first body over one at rest."""
+    if motion.axis is not None:
+        return replace(motion, center=None)
     if motion.velocity is None and not axisymmetric:
         raise CaseError(
             "motions: the first body of an interface cannot rotate about a centre, only the second "
@@ -59,6 +65,9 @@ def _moving(motion: Motion, axisymmetric: bool) -> Motion:
 def _over_moving(motion: Motion | None, axisymmetric: bool) -> Motion:
     """Motion of a first body at rest over a moving one."""
     assert motion is not None
+    if motion.axis is not None:
+        assert motion.angular_velocity is not None
+        return replace(motion, angular_velocity=-motion.angular_velocity, center=None)
     if motion.velocity is not None:
         passes = not motion.across and not axisymmetric
         return replace(motion, velocity=-motion.velocity, center=None, passes=passes)

@@ -12,6 +12,7 @@ from ..case.tables.conditions import FreeMotion
 from ..case.values import units
 from ..case.values.units import in_python
 from ..errors import CaseError
+from ..laws.motions import axis_of
 from ..laws.time_course import LoadHistory, TimeFunction
 from ..model.conditions import Holder, Motion
 from .body import BodySurface, MeshBody, require_surface
@@ -172,24 +173,44 @@ class Translation:
 
 @dataclass(frozen=True)
 class Rotation:
-    """Rotation of a body about the axis of an axisymmetric model, or about a centre.
+    """Rotation of a body about the axis of an axisymmetric model, a centre, or an axis in space.
 
     Attributes
     ----------
     angular_velocity : float or quantity
         Positive anticlockwise [rad/s].
     center : tuple of float
-        x and y of the centre, or of the axis along z, in other than axisymmetric models [m].
+        x and y of the centre, or of the axis along z, in other than axisymmetric models; with
+        `axis` the coordinates of a point of it [m].
+    axis : tuple of float or None
+        Direction of an axis in space that the body turns about in place, by the right-hand rule.
     history : TimeFunction or None
         Time-dependent factor of the angular velocity.
     """
 
     angular_velocity: Any
-    center: tuple[Any, Any] = (0.0, 0.0)
+    center: tuple[Any, ...] = (0.0, 0.0)
+    axis: tuple[float, float, float] | None = None
     history: TimeFunction | None = None
 
     def in_model(self) -> Motion:
-        """Motion of the body in the frame of the model."""
+        """Motion of the body in the frame of the model.
+
+        Raises
+        ------
+        CaseError
+            If the centre has another number of coordinates, or the axis no direction.
+        """
         ω = in_python(units.AngularVelocity, self.angular_velocity, "Rotation.angular_velocity")
+        needed = 2 if self.axis is None else 3
+        if len(self.center) != needed:
+            raise CaseError(f"Rotation.center: has {len(self.center)} coordinates; needs {needed}")
+        if self.axis is not None:
+            point = tuple(each_quantity(units.Coordinate, self.center, "Rotation.center"))
+            try:
+                axis = axis_of(point, self.axis)
+            except ValueError as error:
+                raise CaseError(f"Rotation.axis: {error}") from None
+            return Motion(angular_velocity=ω, axis=axis, history=self.history)
         x, y = each_quantity(units.Coordinate, self.center, "Rotation.center")
         return Motion(angular_velocity=ω, center=(x, y), history=self.history)

@@ -131,7 +131,10 @@ def _motions(case: AssemblyCase) -> Iterator[Fault]:
             yield f"motions.{name}.across", "is for plane models"
         elif motion.across and motion.angular_velocity is not None:
             yield f"motions.{name}.across", "needs a velocity, not angular_velocity"
+        if motion.axis is not None and case.model != "3d":
+            yield f"motions.{name}.axis", "requires a 3d model"
         about = motion.angular_velocity is not None and case.model != "axisymmetric"
+        about = about and motion.axis is None
         if any(motion.center) and not about:
             text = "has no effect: only bodies in a section or in space rotate about it"
             yield f"motions.{name}.center", text

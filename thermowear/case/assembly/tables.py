@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from ..tables.conditions import FreeMotion
+from ..tables.conditions import AxisTable, FreeMotion
 from ..tables.contact import InterfaceTable
 from ..tables.laws import Conductance
 from ..tables.materials import BodyTable
@@ -146,6 +146,8 @@ class BodyMotionTable(Section):
         About the axis of an axisymmetric model; in others about `center`, anticlockwise [rad/s].
     center : tuple of float
         x and y of the centre, or of the axis along z [m].
+    axis : AxisTable or None
+        Axis in space that the body turns about in place, instead of the centre.
     across : bool
         True if the velocity is normal to a plane section.
     amplitude, frequency : float or None
@@ -157,6 +159,7 @@ class BodyMotionTable(Section):
     amplitude: units.Length | None = None
     frequency: units.Frequency | None = None
     center: tuple[units.Coordinate, units.Coordinate] = (0.0, 0.0)
+    axis: AxisTable | None = None
     across: Switch = False
     history: FactorHistory | None = None
 
@@ -168,6 +171,8 @@ class BodyMotionTable(Section):
         given = self.velocity, self.angular_velocity, self.amplitude
         if sum(value is not None for value in given) != 1:
             raise KeyFault("velocity", "give either velocity or angular_velocity")
+        if self.axis is not None and self.angular_velocity is None:
+            raise KeyFault("axis", "needs angular_velocity")
         return self
 
     @property

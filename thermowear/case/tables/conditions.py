@@ -7,8 +7,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import PlainSerializer, PlainValidator, TypeAdapter, ValidationInfo, model_validator
 
+from ...laws.motions import TurningAxis, axis_of
 from ..values import units
-from ..values.section import KeyFault, Section, Switch, number_or
+from ..values.section import KeyFault, Number, Section, Switch, number_or
 from .laws import Conductance
 from .tabulated import FactorHistory, History, TemperatureHistory, TimeHistory
 
@@ -80,17 +81,51 @@ class LoadTable(Section):
     history: History | None = None
 
 
+_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+class AxisTable(Section):
+    """Axis in space that a body turns about, by the right-hand rule.
+
+    Attributes
+    ----------
+    point : tuple of float
+        A point of it [m].
+    direction : str or tuple of float
+        An axis of coordinates, or a vector of any length.
+    """
+
+    point: tuple[units.Coordinate, units.Coordinate, units.Coordinate]
+    direction: Literal["x", "y", "z"] | tuple[Number, Number, Number]
+
+    @model_validator(mode="after")
+    def _has_direction(self):
+        try:
+            self.axis  # noqa: B018
+        except ValueError as error:
+            raise KeyFault("direction", str(error)) from None
+        return self
+
+    @property
+    def axis(self) -> TurningAxis:
+        given = self.direction
+        return axis_of(self.point, _AXES[given] if isinstance(given, str) else given)
+
+
 class MotionTable(Section):
     """Sliding motion, see `model.conditions.Motion`.
 
     Attributes
     ----------
+    axis : AxisTable or None
+        Axis in space that body 1 turns about in place, as a ball in its socket.
     amplitude, frequency : float or None
         Reciprocating motion of body 1, ``x = amplitude sin(2 π frequency t)`` [m, Hz].
     """
 
     angular_velocity: units.AngularVelocity | None = None
     velocity: units.Velocity | None = None
+    axis: AxisTable | None = None
     amplitude: units.Length | None = None
     frequency: units.Frequency | None = None
     history: FactorHistory | None = None

@@ -183,7 +183,8 @@ def _symmetry(case: Case) -> Iterator[Fault]:
     slides = case.motion is not None and not geometry.slides_across
     drags = slides and case.contact.nominal_friction > 0
     if case.model == "3d":
-        if drags and geometry.symmetry and geometry.rotation_center is None:
+        along_x = case.motion is not None and case.motion.axis is None
+        if drags and along_x and geometry.symmetry and geometry.rotation_center is None:
             yield (
                 "geometry.symmetry",
                 "sliding friction along x is not symmetric about a plane x = const; planes "
@@ -207,6 +208,7 @@ _CHECKS = (
     analyses.supported,
     analyses.histories,
     conditions.motion,
+    conditions.in_place,
     analyses.cycles,
     analyses.reciprocating,
     _sliding,

@@ -159,15 +159,31 @@ def motion(case: Case) -> Iterator[Fault]:
     axisymmetric = case.model == "axisymmetric"
     what = f"{case.model} models"
     needed, other = "velocity", "angular_velocity"
-    if axisymmetric or case.geometry.rotation_center is not None:
+    if axisymmetric or motion.axis is not None or case.geometry.rotation_center is not None:
         needed, other = other, needed
-        what = what if axisymmetric else case.geometry.type
+        what = what if axisymmetric else "motion.axis" if motion.axis else case.geometry.type
     if getattr(motion, other) is not None:
         yield f"motion.{other}", f"not supported; {what} needs motion.{needed}"
     elif getattr(motion, needed) is None:
         yield f"motion.{needed}", f"missing; {what} needs it"
     elif axisymmetric and getattr(motion, needed) < 0:
         yield "motion.angular_velocity", "must be greater than 0 in an axisymmetric model"
+
+
+def in_place(case: Case) -> Iterator[Fault]:
+    """Axis in space that body 1 turns about: in place, across the planes of symmetry."""
+    motion, geometry = case.motion, case.geometry
+    if motion is None or motion.axis is None:
+        return
+    if case.model != "3d":
+        yield "motion.axis", "requires a 3d model"
+    elif geometry.passes:
+        yield "motion.axis", "has no effect: body 2 rotates about geometry.rotation_center"
+    along_x, along_y, _ = motion.axis.axis.direction
+    for name, cut, along in (("x", geometry.symmetry, along_x), ("y", geometry.rollers, along_y)):
+        if cut and abs(along) < 1.0:
+            text = f"must be normal to the plane {name} = const of symmetry of the model"
+            yield "motion.axis.direction", text
 
 
 def heat(case: Case) -> Iterator[Fault]:

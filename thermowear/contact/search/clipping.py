@@ -22,6 +22,8 @@ from .polygons import TOLERANCE, Polygons, anticlockwise, cut, divided, tidied
 
 _MAX_EDGE_DEVIATION = 3e-3
 """Largest deviation, relative to a facet, of an edge that is treated as straight."""
+_OFFSET = 1e-2
+"""Largest distance along the faces of nodes that lie opposite, relative to the facet."""
 _MARGIN = 0.1
 """Margin round a facet, relative to it, in which outlines are resolved as finely as inside."""
 _REACH = 1.25
@@ -80,13 +82,19 @@ def _candidates(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarra
 
 
 def _coinciding(face_1: Surface, face_2: Surface) -> np.ndarray:
-    """Facet of body 2 with the same nodes as each of body 1, -1 if there is none, (n_facets_1,)."""
+    """Facet of body 2 whose nodes lie opposite to those of each of body 1, (n_facets_1,).
+
+    -1 if there is none. Gaps up to the length of a facet do not matter.
+    """
     if face_1.nodes.shape[1:] != face_2.nodes.shape[1:]:
         return np.full(len(face_1.nodes), -1)
     _, near = cKDTree(face_2.nodes.mean(axis=1)).query(face_1.nodes.mean(axis=1))
     apart = face_1.nodes[:, :, None] - face_2.nodes[near][:, None]
-    off = np.linalg.norm(apart, axis=3).min(axis=2).max(axis=1)
-    return np.where(off < TOLERANCE * face_1.lengths, near, -1)
+    normals = face_1.middle_normals[:, None, None]
+    gap = np.sum(apart * normals, axis=3, keepdims=True)
+    off = np.linalg.norm(apart - gap * normals, axis=3).min(axis=2).max(axis=1)
+    opposite = (off < _OFFSET * face_1.lengths) & (np.abs(gap).min(axis=(1, 2, 3)) < face_1.lengths)
+    return np.where(opposite, near, -1)
 
 
 def _outlines_in(

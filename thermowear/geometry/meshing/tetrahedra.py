@@ -19,7 +19,7 @@ MOST_TETRAHEDRA = 1_000_000
 """Largest number of tetrahedra of a body."""
 GROWTH = 0.35
 """Increase of the element size per distance from the contact."""
-_PER_CUBE = 8.0
+CELLS_PER_CUBE = 8.0
 """Number of tetrahedra in a cube of their size."""
 _TETRAHEDRON = {1: 4, 2: 11}
 """Element types of gmsh by order."""
@@ -97,7 +97,7 @@ class RoundZone:
         shells = np.trapezoid(2 * math.pi * (self.radius + far) ** 2 / size**3, far)
         tori = np.trapezoid(2 * math.pi**2 * self.radius * far / near_edge**3, far)
         tori -= np.trapezoid(2 * math.pi**2 * self.radius * far / self.inside**3, far)
-        return _PER_CUBE * (within + shells + max(tori, 0.0) + self.volume / self.largest**3)
+        return CELLS_PER_CUBE * (within + shells + max(tori, 0.0) + self.volume / self.largest**3)
 
 
 @dataclass(frozen=True)
@@ -159,7 +159,7 @@ class SectorZone:
         near = np.minimum(edge + GROWTH * away, inside) ** -3 - inside**-3
         edges = np.trapezoid(math.pi / 2 * away * near, away)
         surface = 1 / inside**2 + below
-        return _PER_CUBE * (area * surface + around * max(edges, 0.0))
+        return CELLS_PER_CUBE * (area * surface + around * max(edges, 0.0))
 
 
 def mesh_solids(

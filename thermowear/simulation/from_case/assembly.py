@@ -150,6 +150,7 @@ def _motion(table: BodyMotionTable | None) -> Motion | None:
         velocity=table.mean_velocity,
         angular_velocity=table.angular_velocity,
         center=table.center,
+        axis=None if table.axis is None else table.axis.axis,
         across=table.across,
         history=None if table.history is None else table.history.function,
     )

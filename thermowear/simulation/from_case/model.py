@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...case.tables.analyses import Fretting
+from ...case.tables.conditions import AxisTable
 from ...case.tables.geometry import Geometry, Pressing
 from ...case.tables.laws import PressureConductanceTable, TabulatedConductanceTable, law_of
 from ...case.tables.materials import Properties
@@ -171,6 +172,8 @@ def _in_model(value: Any) -> Any:
         return {name: _in_model(each) for name, each in value.items()}
     if isinstance(value, TemperatureTable | ExpansionTable):
         return value.table
+    if isinstance(value, AxisTable):
+        return value.axis
     return value.function if isinstance(value, FactorHistory | TemperatureHistory) else value
 
 

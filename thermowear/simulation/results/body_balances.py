@@ -64,9 +64,10 @@ def _sense(model: Model, interface: Interface, index: int) -> float:
     """Sense of the friction torque on a body, opposite to its rotation over the other one.
 
     The angular velocity of a contact is that of its first body relative to the second one in an
-    axisymmetric model, that of its second body in others.
+    axisymmetric model and about an axis in place, else that of its second body.
     """
-    turning = 0 if model.kinematics == "axisymmetric" else 1
+    in_place = model.kinematics == "axisymmetric" or interface.motion.axis is not None
+    turning = 0 if in_place else 1
     own = 1.0 if interface.bodies[turning] == index else -1.0
     return -own * float(np.sign(interface.motion.angular_velocity or 0.0))
 

@@ -249,9 +249,12 @@ def _torque(
     motion = interface.motion
     if model.kinematics == "axisymmetric" and motion.velocity is None:
         return float(pairing.weights @ (friction * pairing.points[:, 0]))
-    if motion.center is None:
+    if motion.axis is not None:
+        arms = motion.axis.velocity(pairing.points, 1.0)
+    elif motion.center is not None:
+        arms = pairing.points[:, :2] - np.array(motion.center)
+    else:
         return None
-    arms = pairing.points[:, :2] - np.array(motion.center)
     return float(pairing.weights @ (friction * np.linalg.norm(arms, axis=1)))
 
 

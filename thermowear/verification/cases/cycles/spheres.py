@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ....case import load
-from ....geometry.geometries.ball_on_block import BallOnBlock
+from ....geometry.geometries.balls.ball_on_block import BallOnBlock
 from ....geometry.mesh.tagged import TaggedMesh
 from ....reference.mindlin_sphere import MindlinSphere
 from ....results import FrictionHistory, FrictionInterface, InterfaceFields, Result

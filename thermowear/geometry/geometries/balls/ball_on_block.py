@@ -12,13 +12,13 @@ from typing import Literal
 
 import numpy as np
 
-from ...case.tables.geometry import Geometry, Pressing, keyed, named
-from ...case.values.section import Switch
-from ...case.values.units import Length
-from ...errors import CaseError
-from ..mesh.tagged import TaggedMesh
-from ..meshing.cells import Claim, MeshedBody, both, every, tagged_bodies
-from ..meshing.tetrahedra import RoundZone, mesh_solids
+from ....case.tables.geometry import Geometry, Pressing, keyed, named
+from ....case.values.section import Switch
+from ....case.values.units import Length
+from ....errors import CaseError
+from ...mesh.tagged import TaggedMesh
+from ...meshing.cells import Claim, MeshedBody, both, every, tagged_bodies
+from ...meshing.tetrahedra import RoundZone, mesh_solids
 
 _ORDER = 2
 """Largest cell order; never above the displacement degree, so that rigid rotations are exact."""

@@ -8,6 +8,7 @@ import tomli_w
 
 import thermowear as tw
 from thermowear.app.cli import main
+from thermowear.case import starters
 from thermowear.reference.hertz import contact_modulus, line_contact
 from thermowear.simulation import Observer
 from thermowear.simulation.from_case import with_accurate_mesh
@@ -77,8 +78,23 @@ def test_of_a_mesh_file_only_the_degree_is_chosen():
     tables["geometry"]["path"] = str(DEMOS / "own-mesh.msh")
     case = tw.load(tables)
     found = with_accurate_mesh(case)
-    assert (found.mesh.elements, found.mesh.grading) == (4, 0.5)
+    assert (found.mesh.elements, found.mesh.grading) == (case.mesh.elements, case.mesh.grading)
     assert computed(found).summary["shape_error_estimate_relative"] < 0.05
+
+
+def test_of_bodies_from_cad_only_the_degree_is_chosen(monkeypatch):
+    """requirement: sizes of bodies from CAD are kept, and the note says so."""
+    monkeypatch.chdir(next(iter(starters.__path__)))  # that of the STEP files
+    notes = Notes()
+    sizes = ("mesh.size=30 mm", "mesh.contact_size=15 mm")
+    found = with_accurate_mesh(asking("cad-pad", "60 %", *sizes), observer=notes)
+    assert found.mesh.grading == asking("cad-pad", "60 %").mesh.grading
+    (text,) = notes.texts
+    assert text.startswith("mesh.accuracy: mesh.degree = ")
+    assert "mesh.elements" not in text
+    assert text.endswith(
+        "mesh.size, mesh.contact_size and mesh.grading of bodies from CAD are kept"
+    )
 
 
 def test_an_accuracy_out_of_reach_is_said():

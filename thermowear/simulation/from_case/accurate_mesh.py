@@ -2,80 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 
 from mpi4py import MPI
 
 import numpy as np
 
 from ...case import AnyCase
-from ...case.tables.schema import MOST_ELEMENTS, MeshTable
+from ...case.tables.schema import MeshTable
 from ...errors import CaseError, ComputationError
 from ...results import Result
 from ...timer import Phases
-from ..accuracy.mesh_search import MeshSearch, MeshTrial
+from ..accuracy.compared_values import Number, WornHeights
+from ..accuracy.mesh_search import MeshSearch, MeshTrial, Value
 from ..analyses.run import run
 from ..runtime.observer import Observer
 from .analysis import analysis_of, model_of
-
-_HIGHEST = 10
-_GRADINGS = (0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 1.0)
-_EVENLY = np.linspace(0.0, 1.0, 101)
-_ESTIMATED = ("pressure", "max_pressure", "shape", "temperature")
-
-
-@dataclass(frozen=True)
-class MeshSize:
-    """Keys of ``mesh`` that an accuracy stands for, see `MeshTable`."""
-
-    degree: int = 2
-    elements: int = 4
-    grading: float = 0.5
-
-    def higher(self) -> MeshSize | None:
-        """The next degree."""
-        return replace(self, degree=self.degree + 1) if self.degree < _HIGHEST else None
-
-    def lower(self) -> MeshSize | None:
-        """The degree before."""
-        return replace(self, degree=self.degree - 1) if self.degree > 1 else None
-
-    def finer(self) -> MeshSize | None:
-        """Elements shorter by a third, an even number."""
-        elements = max(self.elements + 2, 2 * round(0.75 * self.elements))
-        return replace(self, elements=elements) if elements <= MOST_ELEMENTS else None
-
-    def coarser(self) -> MeshSize | None:
-        """Elements longer by a half, an even number."""
-        elements = min(self.elements - 2, 2 * round(self.elements / 3))
-        return replace(self, elements=elements) if elements >= 2 else None
-
-    def steeper(self) -> MeshSize | None:
-        """Elements smaller towards the edges of the contact."""
-        smaller = [g for g in _GRADINGS if g < self.grading]
-        return replace(self, grading=smaller[-1]) if smaller else None
-
-    def flatter(self) -> MeshSize | None:
-        """Elements less small towards the edges of the contact."""
-        larger = [g for g in _GRADINGS if g > self.grading]
-        return replace(self, grading=larger[0]) if larger else None
-
+from .mesh_size import MeshSize, changes
 
 _KEYS = ("degree", "elements", "grading")
-
-
-_FORWARD = {
-    "degree": (MeshSize.higher,),
-    "elements": (MeshSize.finer,),
-    "grading": (MeshSize.steeper, MeshSize.flatter),
-}
-"""Changes of each key that reduce the error."""
-_BACK = {
-    "degree": (MeshSize.lower,),
-    "elements": (MeshSize.coarser,),
-    "grading": (MeshSize.steeper, MeshSize.flatter),
-}
-"""Changes of each key that may reduce the number of unknowns."""
+_ESTIMATED = ("pressure", "max_pressure", "shape", "temperature")
 
 
 def with_accurate_mesh(
@@ -84,7 +30,7 @@ def with_accurate_mesh(
     """Case with a mesh of the accuracy it asks for; itself where it asks for none.
 
     Keys of the mesh that the case gives are kept; the analysis is run on one mesh after the other.
-    Of a mesh file only the degree is chosen. Every rank calls.
+    Of a mesh file, and of bodies from CAD, only the degree is chosen. Every rank calls.
 
     Raises
     ------
@@ -93,53 +39,80 @@ def with_accurate_mesh(
     ComputationError
         If nothing can be computed on any mesh.
     """
-    accuracy = case.mesh.accuracy
-    changed = ("degree",) if case.geometry.from_file else _KEYS
-    chosen = [key for key in changed if key not in case.mesh.model_fields_set]
-    if accuracy is None:
+    if case.mesh.accuracy is None:
         return case
-    observer = observer or Observer()
+    observer, chosen = observer or Observer(), _chosen(case)
     if not chosen:
         observer.note("mesh.accuracy: the mesh is kept, as all keys that it could choose are given")
         return case
-    comm = MPI.COMM_WORLD if comm is None else comm
-    kept = case.mesh.model_fields_set & MeshTable.CHOSEN
-    start = MeshSize(**{key: getattr(case.mesh, key) for key in kept})
-    history = case.analysis.type not in ("initial", "steady", "stability")
-    failures: list[CaseError | ComputationError] = []
-
-    def evaluate(size: MeshSize) -> MeshTrial[MeshSize] | None:
-        """Result on a mesh; None if there is none."""
-        try:
-            result = _computed(_with(case, size), comm)
-        except (CaseError, ComputationError) as error:
-            failures.append(error)
-            return None
-        return comm.bcast(_trial(size, result, history))
-
-    forward, back = (
-        {step.__name__: step for key in chosen for step in steps[key]}
-        for steps in (_FORWARD, _BACK)
-    )
-    search = MeshSearch(evaluate, forward, back, accuracy)
+    trials = Trials(case, chosen, MPI.COMM_WORLD if comm is None else comm)
+    search = MeshSearch(trials.evaluate, *changes(chosen), case.mesh.accuracy)
     with (phases or Phases(observer.phase))("mesh search"):
-        best = search.best(start)
+        best = search.best(trials.start())
     if best is None:
-        raise failures[-1]
-    observer.note(_found(search, best))
-    return _with(case, best.mesh)
+        raise trials.failures[-1]
+    observer.note(_found(search, best, chosen) + _kept(case))
+    return trials.on(best.mesh)
 
 
-def _with(case: AnyCase, size: MeshSize) -> AnyCase:
-    """Case with a mesh of given size."""
-    given = case.mesh.model_dump(exclude_unset=True) | {key: getattr(size, key) for key in _KEYS}
-    return case.model_copy(update={"mesh": MeshTable(**given)})
+@dataclass(frozen=True)
+class Trials:
+    """Results of a case on meshes of various sizes. Every rank calls.
+
+    Attributes
+    ----------
+    case : AnyCase
+    chosen : set of str
+        Keys of the mesh that are chosen.
+    comm : mpi4py.MPI.Comm
+    failures : list of CaseError or ComputationError
+        Reasons for meshes without a result.
+    """
+
+    case: AnyCase
+    chosen: set[str]
+    comm: MPI.Comm
+    failures: list[CaseError | ComputationError] = field(default_factory=list)
+
+    def start(self) -> MeshSize:
+        """Coarse mesh with the keys that are kept."""
+        kept = MeshTable.CHOSEN - self.chosen
+        return MeshSize(**{key: getattr(self.case.mesh, key) for key in kept})
+
+    def on(self, size: MeshSize) -> AnyCase:
+        """Case with a mesh of given size."""
+        keys = {key: getattr(size, key) for key in _KEYS}
+        given = self.case.mesh.model_dump(exclude_unset=True) | keys
+        return self.case.model_copy(update={"mesh": MeshTable(**given)})
+
+    def evaluate(self, size: MeshSize) -> MeshTrial[MeshSize] | None:
+        """Errors and values on a mesh; None if there is no result on it."""
+        try:
+            result = _computed(self.on(size), self.comm)
+        except (CaseError, ComputationError) as error:
+            self.failures.append(error)
+            return None
+        return self.comm.bcast(_trial(self.case, size, result))
 
 
-def _found(search: MeshSearch[MeshSize], best: MeshTrial[MeshSize]) -> str:
+def _chosen(case: AnyCase) -> set[str]:
+    """Keys of the mesh that are chosen."""
+    made = not (case.geometry.from_file or case.geometry.sized)
+    changed = set(_KEYS) if made else {"degree"}
+    return changed - case.mesh.model_fields_set
+
+
+def _kept(case: AnyCase) -> str:
+    """Addition to the note, on keys of the mesh that are not chosen."""
+    if not case.geometry.sized:
+        return ""
+    return "; mesh.size, mesh.contact_size and mesh.grading of bodies from CAD are kept"
+
+
+def _found(search: MeshSearch[MeshSize], best: MeshTrial[MeshSize], chosen: set[str]) -> str:
     """Note on the mesh that was found, and on what it does not reach."""
     size, error = best.mesh, search.error(best)
-    keys = ", ".join(f"mesh.{key} = {getattr(size, key):g}" for key in _KEYS)
+    keys = ", ".join(f"mesh.{key} = {getattr(size, key):g}" for key in _KEYS if key in chosen)
     text = (
         f"mesh.accuracy: {keys} after {len(search.trials)} meshes; {best.unknowns} unknowns, "
         f"estimated error {100 * error:.2g} %"
@@ -162,37 +135,39 @@ def _computed(case: AnyCase, comm) -> Result:
     return result
 
 
-def _trial(size: MeshSize, result: Result, history: bool) -> MeshTrial[MeshSize]:
-    """Errors on a mesh, by estimates and by values that are compared with those on other meshes.
+def _trial(case: AnyCase, size: MeshSize, result: Result) -> MeshTrial[MeshSize]:
+    """Estimated errors on a mesh, and values that are compared with those on other meshes.
+
+    A history carries errors of earlier states along, of which the estimate of the largest pressure
+    at its end knows nothing.
 
     Raises
     ------
     CaseError
         If no error of the pressure is estimated.
     """
-    summary, interface = result.summary, result.interface
+    summary = result.summary
     found = {name: summary.get(f"{name}_error_estimate_relative") for name in _ESTIMATED}
     estimates = {name: error for name, error in found.items() if error is not None}
     if "pressure" not in estimates:
         missing = summary.get("error_estimate_missing", {})
         reason = missing.get("pressure", missing.get("all", "this analysis has no estimate"))
         raise CaseError(f"mesh.accuracy: the error of the pressure is not known: {reason}")
-    values: dict[str, tuple[float | np.ndarray, float]] = {
-        "max_pressure": (summary["max_pressure_Pa"], summary["max_pressure_Pa"])
-    }
-    if history and "shape" in estimates:
-        values["shape"] = (_profile(result), summary["shape_range_m"])
-    hottest = summary.get("max_temperature_K")
-    if hottest is not None and (history or "temperature" not in estimates):
-        coldest = min(interface.temperature_1.min(), interface.temperature_2.min())
-        values["temperature"] = (hottest, max(hottest - coldest, 1.0))
-    return MeshTrial(size, summary["dofs_displacement"], history, estimates, values)
+    if case.analysis.type not in ("initial", "steady", "stability"):
+        estimates.pop("max_pressure", None)
+    values: dict[str, Value] = {"max_pressure": Number(*2 * (summary["max_pressure_Pa"],))}
+    if "shape" in estimates:
+        values["shape"] = _shape(result)
+    hottest, heat = summary.get("max_temperature_K"), case.heat
+    if hottest is not None and heat is not None:
+        values["temperature"] = Number(hottest, max(abs(hottest - heat.ambient), 1.0))
+    return MeshTrial(size, summary["dofs_displacement"], estimates, values)
 
 
-def _profile(result: Result) -> np.ndarray | float:
-    """Shape without its mean at even distances on the faces of sections; in space its range [m]."""
-    shape, weight = result.interface.shape, result.interface.weight
-    if np.any(result.interface.z):
-        return float(result.summary["shape_range_m"])
-    along = (np.cumsum(weight) - weight / 2) / weight.sum()
-    return np.interp(_EVENLY, along, shape - np.average(shape, weights=weight))
+def _shape(result: Result) -> Value:
+    """Shape along the contact of a section; in space its range."""
+    interface = result.interface
+    if np.isnan(interface.s).any():
+        return Number(*2 * (float(result.summary["shape_range_m"]),))
+    pressing = np.where(interface.pressure > 0, interface.weight, 0.0)
+    return WornHeights(interface.s, interface.shape, pressing)

@@ -28,6 +28,9 @@ from .contact_solver import ContactSolver
 from .interface_wear import InterfaceWear
 from .sdirk import InterfaceState
 
+Note = Callable[[str], None] | None
+"""Function that is called with a note for the user."""
+
 _RISE = 0.1
 """Fraction of the rise of the largest pressure in a step that counts as its error."""
 _MOST_POINTS = 3000
@@ -52,13 +55,7 @@ class GrowingEdge:
     wear : InterfaceWear
     """
 
-    def __init__(
-        self,
-        system: System,
-        method: ContactSolver,
-        wear: InterfaceWear,
-        note: Callable[[str], None] | None,
-    ):
+    def __init__(self, system: System, method: ContactSolver, wear: InterfaceWear, note: Note):
         self.method, self.wear, self._note = method, wear, note
         self._facet, self._basis = system.contacts.facet, system.basis
         self._weights = system.weights

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +15,7 @@ from .contact_solver import ContactSolution, ContactSolver
 from .equilibrium import ContactState
 from .fixed_point import Trial, self_consistent
 from .full_method import FullMethod
-from .growing_edge import GrowingEdge
+from .growing_edge import GrowingEdge, Note
 from .interface_wear import InterfaceWear
 from .pointwise_method import PointwiseMethod
 from .sdirk import InterfaceState, WearProblem
@@ -40,11 +39,7 @@ class InterfaceProblem(WearProblem):
     """
 
     def __init__(
-        self,
-        system: System,
-        method: ContactSolver,
-        heat: FrictionHeat | None,
-        note: Callable[[str], None] | None = None,
+        self, system: System, method: ContactSolver, heat: FrictionHeat | None, note: Note = None
     ):
         self.system, self._method, self.heat = system, method, heat
         self._condition_model = ConditionModel(system)
@@ -286,9 +281,7 @@ class InterfaceProblem(WearProblem):
         return float(np.abs(state.pressure - last.pressure).max() / last.pressure.max())
 
 
-def interface_problem(
-    system: System, note: Callable[[str], None] | None = None
-) -> InterfaceProblem:
+def interface_problem(system: System, note: Note = None) -> InterfaceProblem:
     """Interface problem of a system, with the contact method of its model. Every rank calls.
 
     Parameters

@@ -6,6 +6,7 @@ import thermowear as tw
 from thermowear.errors import CaseNote
 from thermowear.simulation.from_case import model_of
 from thermowear.verification.cases.assembly.pad_disk_pad import Brake
+from thermowear.verification.check import starter
 
 from .starter import GONE, changed
 
@@ -170,3 +171,9 @@ def test_default_of_wear_coefficients():
     """requirement: a coefficient per friction stress by default is noted, as for two bodies."""
     with pytest.warns(CaseNote, match=r"^wear\.left\.per is left out.* wears 2\.5 times as fast"):
         tw.load(changed(RING, {"wear.left": {"coefficient": "1e-7 1/MPa"}}))
+
+
+def test_pressures_at_nodes_are_for_sections():
+    """requirement: the key is named for several bodies in space as for two."""
+    with pytest.raises(tw.CaseError, match=r"contacts.upper.pressure_degree: not supported in 3d"):
+        starter("two-pads-3d", 'contacts.upper.pressure_degree="lobatto"')

@@ -109,7 +109,7 @@ def _sliding(case: AssemblyCase) -> Iterator[Fault]:
 
 
 def _pressure_degrees(case: AssemblyCase) -> Iterator[Fault]:
-    """The pressure has at most the degree of the displacement."""
+    """The pressure has at most the degree of the displacement; nodal ones are for sections."""
     for path, contact in case.contact_tables.items():
         own = contact.pressure_degree
         if isinstance(own, int) and own > case.mesh.degree:
@@ -117,6 +117,8 @@ def _pressure_degrees(case: AssemblyCase) -> Iterator[Fault]:
                 f"{path}.pressure_degree",
                 f"found {own}; at most mesh.degree = {case.mesh.degree}",
             )
+        elif own == "lobatto" and case.model == "3d":
+            yield f"{path}.pressure_degree", "not supported in 3d models"
 
 
 def _carried(case: AssemblyCase) -> Iterator[Fault]:

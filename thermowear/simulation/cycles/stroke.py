@@ -177,7 +177,7 @@ def _moved(
         raise CaseError(
             f"{where}: {found.unpaired:.2%} of {interface.faces[0]} leaves "
             f"{interface.faces[1]} where {body} is moved by {offset:.4g} m; a longer face of "
-            "body 2 is needed (geometry.stroke)"
+            "body 2 is needed"
         )
     return found, basis
 

@@ -147,6 +147,8 @@ def _points(
     """Contact points of two faces, and pressure space Ψ; parameters as in `pair`."""
     degree = model.discretisation.degree
     if interface.pressure_degree == "lobatto":  # at the nodes of body 1's facets
+        if isinstance(face_1, Surface):
+            raise CaseError(f"{interface.table}.pressure_degree: 'lobatto' is for sections")
         pairing = pair(face_1, face_2, kinematics, degree + 1, refine=False)
         _check_jumps(model, interface, pairing)
         return pairing, np.eye(len(pairing.weights))

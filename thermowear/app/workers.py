@@ -136,7 +136,14 @@ def _serve(pipe, work) -> None:
     """Main loop of a worker process: compute tasks until there are no more."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # a pending one is ignored
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    ended = False
+
+    def end(number, frame):
+        nonlocal ended
+        ended = True
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, end)
     deliver_again()
     try:
         while (message := pipe.recv()) is not None:
@@ -144,6 +151,9 @@ def _serve(pipe, work) -> None:
             _send(pipe, None)
     except (KeyboardInterrupt, EOFError):
         pass
+    except Exception:
+        if not ended:  # a library may turn the interrupt into an error of its own
+            raise
 
 
 def _send(pipe, message) -> None:

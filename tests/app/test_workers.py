@@ -31,6 +31,14 @@ def dawdle(task, tell):
         raise
 
 
+def convert(task, tell):
+    try:
+        tell("begun")
+        time.sleep(60)
+    except KeyboardInterrupt:
+        raise RuntimeError("a library: interrupted") from None
+
+
 def test_all_tasks_are_done_in_other_processes():
     """requirement: tasks are computed in processes, each reported when it is finished."""
     told, lost = [], []
@@ -66,6 +74,17 @@ def test_what_is_saved_after_ctrl_c_arrives(heeds_ctrl_c):
         work_off([1, 2, 3], 2, dawdle, hear, lambda *given: None)
     assert told == ["begun", "begun", "saved", "saved"]
     assert not multiprocessing.active_children()
+
+
+def test_an_interrupt_that_a_library_turns_into_an_error(heeds_ctrl_c, capfd):
+    """requirement: a process that is ended says nothing."""
+
+    def hear(message):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        work_off([[1]], 1, convert, hear, lambda *given: None)
+    assert capfd.readouterr().err == ""
 
 
 def test_ctrl_c_while_a_process_is_started(heeds_ctrl_c, monkeypatch):

@@ -220,6 +220,37 @@ def test_a_ball_leaves_a_groove():
     assert track.weight.sum() == close((2 * end + 2 * amplitude) * end, 1e-3)
 
 
+def test_a_groove_has_the_area_of_its_arc():
+    """requirement: areas of the track are those of the face of body 2, not of its projection."""
+    radius, end, half = 2.5e-3, 2e-3, 4e-3
+    up = np.array([0.0, 2.5e-3, 1e-2])
+
+    def rounded(p):
+        x, y, z = np.moveaxis(p, -1, 0)
+        return np.stack([x, y, z + y**2 / (2 * radius) * (1 - np.abs(z) / up[-1])], axis=-1)
+
+    def face(p):
+        _, y, z = np.moveaxis(p, -1, 0)
+        return np.all(np.abs(z - y**2 / (2 * radius)) < 1e-9, axis=1)
+
+    across, ends = np.linspace(0.0, end, 5), {"upper": half, "lower": 3 * half}
+    bodies = {
+        n: mesh_lattice(
+            (np.linspace(-x, x, 5), across, up if n == "upper" else -up[::-1]), 2, rounded
+        )
+        for n, x in ends.items()
+    }
+    levels = {f"{n}_low": level(1, 0.0) for n in bodies} | {f"{n}_face": face for n in bodies}
+    levels |= {"upper_end": level(2, up[-1]), "lower_end": level(2, -up[-1])}
+    meshes = Meshed(tagged_bodies(bodies, levels))
+    chosen = model(meshes, "3d", friction=0.0, rollers=("low",), k=1e-16)
+    track = computed(chosen, end_time=1e-3).track.last
+    at = end / radius
+    arc = radius / 2 * (at * np.hypot(1, at) + np.arcsinh(at))
+    assert arc > 1.09 * end
+    assert track.weight.sum() == close(arc * (2 * half + 2 * AMPLITUDE), 1e-3)
+
+
 def test_both_ways_wear_alike():
     """requirement: friction reverses with the motion, so that depths are symmetric in x."""
     _, solid = twins()

@@ -16,7 +16,7 @@ from functools import cache
 
 import numpy as np
 
-from thermowear.reference.hertz import contact_modulus, line_contact
+from thermowear.reference.elastic_contact.hertz import contact_modulus, line_contact
 from thermowear.results import Result
 from thermowear.verification.check import run_starter
 

@@ -46,7 +46,7 @@ from thermowear import geometry  # noqa: F401  (makes the geometries known)
 from thermowear.case import load
 from thermowear.case.starters import starter_text
 from thermowear.geometry.mesh.nodes import reference_nodes
-from thermowear.reference.hertz import contact_modulus
+from thermowear.reference.elastic_contact.hertz import contact_modulus
 from thermowear.simulation.analyses.positioning import prepare
 from thermowear.simulation.from_case import model_of
 from thermowear.simulation.interface.interface_problem import interface_problem

@@ -19,7 +19,7 @@ from time import process_time
 import numpy as np
 
 from thermowear.errors import CaseError, ComputationError
-from thermowear.reference.hertz import contact_modulus, line_contact
+from thermowear.reference.elastic_contact.hertz import contact_modulus, line_contact
 from thermowear.results import Result
 from thermowear.simulation.from_case import with_accurate_mesh
 from thermowear.verification.check import computed, run_starter, starter

@@ -11,8 +11,8 @@ from thermowear.contact.friction.slip_wear import SlipWear, WornProfile, WornPro
 from thermowear.contact.friction.stick_slip import follow
 from thermowear.contact.friction.stick_slip_state import Status
 from thermowear.laws import PowerWear
-from thermowear.reference.growing_contact import growing_line
-from thermowear.reference.hertz import MindlinLine
+from thermowear.reference.elastic_contact.growing_contact import growing_line
+from thermowear.reference.elastic_contact.hertz import MindlinLine
 
 from .half_plane import half_plane, loaded
 

@@ -25,7 +25,7 @@ from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.parallel import sum_over_ranks
-from thermowear.reference.hertz import MindlinLine, contact_modulus
+from thermowear.reference.elastic_contact.hertz import MindlinLine, contact_modulus
 
 from ..conftest import two_blocks
 from .half_plane import PRESS as PRESSED

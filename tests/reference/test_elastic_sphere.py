@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermowear.reference.hertz import (
+from thermowear.reference.elastic_contact.hertz import (
     contact_modulus,
     normal_compliance,
     point_contact,

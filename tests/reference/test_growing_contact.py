@@ -6,7 +6,11 @@ import numpy as np
 import pytest
 from scipy.special import ellipe, ellipk
 
-from thermowear.reference.growing_contact import GrowingContact, growing_line, growing_point
+from thermowear.reference.elastic_contact.growing_contact import (
+    GrowingContact,
+    growing_line,
+    growing_point,
+)
 
 RADIUS, MODULUS, FORCE = 10e-3, 1.15e11, 2e4
 MULTIPLES = np.array([3.0, 4.0, 6.0])

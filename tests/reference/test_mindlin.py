@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from thermowear.reference.hertz import MindlinLine
+from thermowear.reference.elastic_contact.hertz import MindlinLine
 
 
 @dataclass(frozen=True)

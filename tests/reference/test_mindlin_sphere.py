@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from thermowear.reference.hertz import point_contact
-from thermowear.reference.mindlin_sphere import MindlinSphere
+from thermowear.reference.elastic_contact.hertz import point_contact
+from thermowear.reference.elastic_contact.mindlin_sphere import MindlinSphere
 
 STEEL = (2e11, 0.3)
 SPHERE = MindlinSphere(20.0, 0.01, (STEEL, (7e10, 0.33)), 0.6)

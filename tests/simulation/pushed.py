@@ -3,7 +3,7 @@
 import numpy as np
 
 import thermowear as tw
-from thermowear.reference.hertz import MindlinLine, contact_modulus
+from thermowear.reference.elastic_contact.hertz import MindlinLine, contact_modulus
 
 from .boundary_elements import Contact, Material, block, half_cylinder
 

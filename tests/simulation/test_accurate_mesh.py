@@ -9,7 +9,7 @@ import tomli_w
 import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.case import starters
-from thermowear.reference.hertz import contact_modulus, line_contact
+from thermowear.reference.elastic_contact.hertz import contact_modulus, line_contact
 from thermowear.simulation import Observer
 from thermowear.simulation.from_case import with_accurate_mesh
 from thermowear.verification.check import computed, run_starter, starter

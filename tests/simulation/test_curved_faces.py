@@ -6,7 +6,7 @@ import pytest
 import thermowear as tw
 from thermowear import CaseError, ComputationError
 from thermowear.geometry.reading.export import write_mesh
-from thermowear.reference.hertz import contact_modulus, line_contact
+from thermowear.reference.elastic_contact.hertz import contact_modulus, line_contact
 
 from .cylinders import ball, case_tables, cylinder, on_cylinder, pin_in_bush
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.contact.friction.stick_slip import FullSliding
-from thermowear.reference.hertz import MindlinLine, contact_modulus
+from thermowear.reference.elastic_contact.hertz import MindlinLine, contact_modulus
 from thermowear.verification.cases.cycles import spheres
 
 from ..case.starter import FRETTING, solved

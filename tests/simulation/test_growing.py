@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.reference.growing_contact import growing_line, growing_point
+from thermowear.reference.elastic_contact.growing_contact import growing_line, growing_point
 from thermowear.verification.cases.contact.hertz import MODULUS
 
 from ..case.starter import GONE, solved

@@ -6,7 +6,7 @@ import weakref
 import numpy as np
 import pytest
 
-from thermowear.reference.growing_contact import growing_point
+from thermowear.reference.elastic_contact.growing_contact import growing_point
 from thermowear.simulation.geometry_update import geometry_update
 from thermowear.simulation.system.building import build
 from thermowear.verification.cases.wear.growing import worn_half_width

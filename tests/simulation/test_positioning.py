@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.reference.hertz import contact_modulus, line_contact
+from thermowear.reference.elastic_contact.hertz import contact_modulus, line_contact
 from thermowear.simulation.analyses.positioning import touching
 
 from ..case.starter import GONE, HERTZ, PUNCH, SPHERE, STEADY, solved, tables

@@ -5,7 +5,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.geometry.reading.export import write_mesh
-from thermowear.reference.hertz import line_contact
+from thermowear.reference.elastic_contact.hertz import line_contact
 
 from .cylinders import case_tables, cylinder, on_cylinder
 from .pushed import FRICTION, MODULUS, R, by_boundary_elements, centres, known, law, on_flat, pushed

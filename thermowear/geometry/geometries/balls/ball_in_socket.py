@@ -13,15 +13,14 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from ....case.tables.geometry import Geometry, keyed, named
-from ....case.values.section import KeyFault, Switch
+from ....case.tables.geometry import keyed, named
+from ....case.values.section import KeyFault
 from ....case.values.units import Angle, Length
 from ...mesh.tagged import TaggedMesh
-from ...meshing.cells import Claim, MeshedBody, both, every, tagged_bodies
-from ...meshing.tetrahedra import CELLS_PER_CUBE, GROWTH, mesh_solids
+from ...meshing.cells import Claim, both, every, tagged_bodies
+from ...meshing.tetrahedra import CELLS_PER_CUBE, GROWTH
+from .ball_geometry import BallGeometry
 
-_ORDER = 2
-"""Largest cell order; never above the displacement degree, so that rigid rotations are exact."""
 _WIDEST = math.radians(80.0)
 """Largest angle of the socket from the load direction."""
 _COARSEST = 0.4
@@ -30,7 +29,7 @@ _SAME = 1e-6
 """Tolerance for positions of nodes on a surface, by the radius of the ball."""
 
 
-class BallInSocket(Geometry):
+class BallInSocket(BallGeometry):
     """Dimensions of ball and socket.
 
     ``mesh.elements`` is the number along an arc of the socket from rim to rim. Elements at the rim
@@ -38,8 +37,6 @@ class BallInSocket(Geometry):
 
     Attributes
     ----------
-    radius : float
-        Radius of the ball [m].
     clearance : float
         Difference of the radii of socket and ball [m].
     socket_angle : float
@@ -48,27 +45,19 @@ class BallInSocket(Geometry):
         Outer radius of the socket [m].
     socket_thickness : float
         Thickness of the socket below the ball [m].
-    half : bool
-        Mesh only y >= 0; bodies and loads are symmetric about y = 0, and forces are those on the
-        meshed half.
     """
 
     name = "ball-in-socket"
-    models = ("3d",)
     bodies = ("ball", "socket")
     held = "ball_top"
     fixed = "socket_bottom"
-    press_direction = (0.0, 0.0, -1.0)
     unmeshed = ("clearance",)
-    along_paths = False
 
     type: Literal["ball-in-socket"]
-    radius: Length
     clearance: Length
     socket_angle: Annotated[Angle, Field(gt=0.0, le=_WIDEST)]
     socket_radius: Length
     socket_thickness: Length
-    half: Switch = False
 
     @model_validator(mode="after")
     def _fits(self):
@@ -87,23 +76,14 @@ class BallInSocket(Geometry):
         ball, socket = named("ball", "face", "top"), named("socket", "face", "bottom", "rim")
         return *ball, *socket, *self.rollers, *named("ball", "side"), *named("socket", "side")
 
-    @keyed
-    def rollers(self) -> tuple[str, ...]:
-        return tuple(f"{body}_middle" for body in self.bodies) if self.half else ()
-
     @property
     def rim(self) -> float:
         """Radius of the rim of the socket, without clearance [m]."""
         return self.radius * math.sin(self.socket_angle)
 
     def build(self, mesh, zone=None) -> TaggedMesh:
-        order = min(mesh.degree, _ORDER)
         zones = {body: self._zone(body, mesh) for body in self.bodies}
-        alike = mesh.face("ball") == mesh.face("socket")
-        groups = [zones] if alike else [{name: each} for name, each in zones.items()]
-        bodies: dict[str, MeshedBody] = {}
-        for group in groups:
-            bodies |= mesh_solids(self._drawing(tuple(group)), group, order, self.radius)
+        bodies = self.meshed(mesh, zones, self._drawing)
         claims = self._claims()
         found = tagged_bodies(bodies, {surface: claims[surface] for surface in self.surfaces})
         points = found.points.copy()

@@ -12,16 +12,14 @@ from typing import Literal
 
 import numpy as np
 
-from ....case.tables.geometry import Geometry, Pressing, keyed, named
-from ....case.values.section import Switch
+from ....case.tables.geometry import Pressing, keyed, named
 from ....case.values.units import Length
 from ....errors import CaseError
 from ...mesh.tagged import TaggedMesh
-from ...meshing.cells import Claim, MeshedBody, both, every, tagged_bodies
-from ...meshing.tetrahedra import RoundZone, mesh_solids
+from ...meshing.cells import Claim, both, every, tagged_bodies
+from ...meshing.tetrahedra import RoundZone
+from .ball_geometry import BallGeometry
 
-_ORDER = 2
-"""Largest cell order; never above the displacement degree, so that rigid rotations are exact."""
 _FACE = 1.4
 """Radius of the contact faces over that of the expected contact."""
 _WIDEST = 0.5
@@ -34,7 +32,7 @@ _SAME = 1e-7
 """Tolerance for positions of nodes on a surface, by the radius of the sphere."""
 
 
-class BallOnBlock(Geometry):
+class BallOnBlock(BallGeometry):
     """Dimensions of sphere and block.
 
     ``mesh.elements`` is the number across the expected contact. Elements at its edge are smaller by
@@ -42,41 +40,27 @@ class BallOnBlock(Geometry):
 
     Attributes
     ----------
-    radius : float
-        Radius of the sphere [m].
     block_radius, block_height : float [m]
     zone : float or None
         Radius of the finely meshed zone, by default that of the expected contact of the unworn
         bodies; larger for contacts that grow by wear [m].
-    half : bool
-        Mesh only y >= 0; bodies and loads are symmetric about y = 0, and forces are those on the
-        meshed half.
     """
 
     name = "ball-on-block"
-    models = ("3d",)
     bodies = ("sphere", "block")
     held = "sphere_top"
     fixed = "block_bottom"
-    press_direction = (0.0, 0.0, -1.0)
     unmeshed = ("zone",)
-    along_paths = False
 
     type: Literal["ball-on-block"]
-    radius: Length
     block_radius: Length
     block_height: Length
     zone: Length | None = None
-    half: Switch = False
 
     @keyed
     def surfaces(self) -> tuple[str, ...]:
         on_bodies = *named("sphere", "face", "top"), *named("block", "face", "top", "bottom")
         return *on_bodies, *self.rollers, *named("sphere", "side"), *named("block", "side")
-
-    @keyed
-    def rollers(self) -> tuple[str, ...]:
-        return tuple(f"{body}_middle" for body in self.bodies) if self.half else ()
 
     @property
     def follows_contact(self) -> bool:
@@ -111,13 +95,8 @@ class BallOnBlock(Geometry):
         assert zone is not None
         self.check_zone(zone)
         drawn = _Drawing(self, _FACE * zone[1])
-        order = min(mesh.degree, _ORDER)
         zones = {body: self._zone(body, mesh, zone[1]) for body in self.bodies}
-        alike = mesh.face("sphere") == mesh.face("block")
-        groups = [zones] if alike else [{name: each} for name, each in zones.items()]
-        bodies: dict[str, MeshedBody] = {}
-        for group in groups:
-            bodies |= mesh_solids(drawn.drawing(tuple(group)), group, order, self.radius)
+        bodies = self.meshed(mesh, zones, drawn.drawing)
         bodies["sphere"] = replace(bodies["sphere"], points=drawn.rounded(bodies["sphere"].points))
         claims = drawn.claims()
         found = tagged_bodies(bodies, {surface: claims[surface] for surface in self.surfaces})

@@ -7,8 +7,13 @@ from math import pi, sqrt
 
 import numpy as np
 
-from ....reference import hertz as reference
-from ....reference.hertz import contact_modulus, line_contact, point_contact, sphere_on_half_space
+from ....reference.elastic_contact import hertz as reference
+from ....reference.elastic_contact.hertz import (
+    contact_modulus,
+    line_contact,
+    point_contact,
+    sphere_on_half_space,
+)
 from ....results import Result
 from ...check import Check, along, compare, compare_each, run_starter
 

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ....reference.growing_contact import growing_line
-from ....reference.hertz import MindlinLine, contact_modulus
+from ....reference.elastic_contact.growing_contact import growing_line
+from ....reference.elastic_contact.hertz import MindlinLine, contact_modulus
 from ....results import CycleRow, FrictionInterface, Result
 from ...check import Check, compare, compare_worst, run_starter
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ....reference.hertz import MindlinLine, contact_modulus
+from ....reference.elastic_contact.hertz import MindlinLine, contact_modulus
 from ....results import Result
 from ...check import Check, along, compare, run_starter
 

@@ -15,7 +15,7 @@ import numpy as np
 from ....case import load
 from ....geometry.geometries.balls.ball_on_block import BallOnBlock
 from ....geometry.mesh.tagged import TaggedMesh
-from ....reference.mindlin_sphere import MindlinSphere
+from ....reference.elastic_contact.mindlin_sphere import MindlinSphere
 from ....results import FrictionHistory, FrictionInterface, InterfaceFields, Result
 from ...check import Check, compare, compare_worst, computed, run_starter
 

@@ -12,7 +12,7 @@ from math import log2, pi
 
 import numpy as np
 
-from ....reference.growing_contact import growing_line
+from ....reference.elastic_contact.growing_contact import growing_line
 from ....results import Result
 from ...check import Check, along, compare, compare_each, run_starter
 from ..contact.hertz import MODULUS
@@ -67,9 +67,9 @@ def pin_on_disc() -> Iterator[Check]:
 
     The published depths are those of the cap that a flat cuts off the sphere, a²/(2 R) of the
     published radii. For elastic bodies the depth at the centre is smaller, see
-    `reference.growing_contact`: by 2.1 % after 320 mm and 1.2 % after 640 mm (converged finite
-    elements: 2.17 % and 1.20 %). Depths at the centre are therefore compared with those, and the
-    later one with both.
+    `reference.elastic_contact.growing_contact`: by 2.1 % after 320 mm and 1.2 % after 640 mm
+    (converged finite elements: 2.17 % and 1.20 %). Depths at the centre are therefore compared with
+    those, and the later one with both.
     """
     law, (first, last) = SPHERE.law(SPHERE.coefficient), PUBLISHED
     times = f'analysis.end_time="{last / SPEED} s"', f'analysis.output_times=["{first / SPEED} s"]'

@@ -8,7 +8,11 @@ from functools import partial
 
 import numpy as np
 
-from ....reference.growing_contact import GrowingContact, growing_line, growing_point
+from ....reference.elastic_contact.growing_contact import (
+    GrowingContact,
+    growing_line,
+    growing_point,
+)
 from ....results import InterfaceFields
 from ...check import Check, compare, run_starter
 from ..contact.hertz import MODULUS

@@ -100,7 +100,7 @@ def growing_line(
     Parameters
     ----------
     force, radius, modulus
-        See `thermowear.reference.hertz.line_contact`.
+        See `thermowear.reference.elastic_contact.hertz.line_contact`.
     coefficient : float
         k of both bodies together: depth per sliding distance ``k p^b`` [Pa^(-b)].
     exponent : float

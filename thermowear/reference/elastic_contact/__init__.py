@@ -1,0 +1,1 @@
+"""Elastic bodies in contact: Hertz, Mindlin, and contacts that grow by wear."""

@@ -26,6 +26,10 @@ class Kinematics(ABC):
 
     name: str
 
+    def components(self, dim: int) -> int:
+        """Number of displacement components on meshes of a dimension."""
+        return dim
+
     @abstractmethod
     def sliding(
         self,
@@ -111,8 +115,12 @@ class Kinematics(ABC):
         return (λ * ufl.tr(strain) - thermal) * ufl.Identity(3) + 2 * μ * strain
 
     def on_axis(self, x: np.ndarray) -> np.ndarray:
-        """Mask of points whose first displacement vanishes by symmetry; x of shape (3, n)."""
+        """Mask of points on the axis of symmetry; x of shape (3, n)."""
         return np.zeros(x.shape[1], dtype=bool)
+
+    def vanishes_on_axis(self, component: int) -> bool:
+        """True if a displacement component vanishes on the axis by symmetry."""
+        return component == 0
 
 
 class Axisymmetric(Kinematics):

@@ -155,6 +155,7 @@ def elasticity(
     choice: SolverChoice | None = None,
     mid_plane: tuple[str, ...] = (),
     joints: Callable[[Spaces], Joints] | None = None,
+    pinned: Callable[[Spaces, list[np.ndarray]], list[np.ndarray]] | None = None,
 ) -> Elasticity:
     """Assemble the stiffness and set up its solver, group by group. Every rank calls.
 
@@ -178,20 +179,26 @@ def elasticity(
         Surfaces in space whose third displacement component vanishes.
     joints : callable, optional
         Joints of glued bodies in the displacement spaces, see `contact.ties.joints`.
+    pinned : callable, optional
+        Masks by body of the owned values held at zero, from the spaces and those of the supports.
 
     Raises
     ------
     ComputationError
         If a body, or a group of glued ones, is not supported, or is too large for a factor.
     """
-    spaces, choice = lagrange_spaces(bodies, degree, bodies.dim), choice or SolverChoice()
+    spaces = lagrange_spaces(bodies, degree, kinematics.components(bodies.dim))
+    choice = choice or SolverChoice()
     glued = NO_JOINTS if joints is None else joints(spaces)
     spaces = glued.joining(spaces)
     guided = symmetric, rollers, mid_plane
+    pairs = list(zip(bodies.each, spaces.each, strict=True))
+    held = [fixed_values(body, kinematics, space, clamped, guided) for body, space in pairs]
+    if pinned is not None:
+        held = pinned(spaces, held)
     each = []
-    for body, space in zip(bodies.each, spaces.each, strict=True):
+    for (body, space), fixed in zip(pairs, held, strict=True):
         forms = ElasticForms(body, kinematics, _lame(body, kinematics, materials))
-        fixed = fixed_values(body, kinematics, space, clamped, guided)
         each.append(ElasticBody(forms.body, kinematics, forms.lame, space, fixed))
     groups = tuple(
         elastic_group(
@@ -236,10 +243,10 @@ def fixed_values(body: BodyMesh, kinematics: Kinematics, space, clamped, guided)
     tdim = mesh.topology.dim
     bs, count = space.dofmap.index_map_bs, space.dofmap.index_map.size_local
     held = np.zeros(owned(space), dtype=bool)
-    for component in range(mesh.geometry.dim):
+    for component in range(bs):
         facets = [body.facets(surface) for surface in clamped]
         facets += [body.facets(surface) for surface in guided[component]]
-        if component == 0:
+        if kinematics.vanishes_on_axis(component):
             facets.append(dmesh.locate_entities_boundary(mesh, tdim - 1, kinematics.on_axis))
         nodes = fem.locate_dofs_topological(
             space, tdim - 1, np.unique(np.concatenate(facets)).astype(np.int32)

@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from ...contact.operators.condensation import CondensedContact
 from ...contact.operators.pressure import dense, scaled
 from ...errors import CaseError
 from ...laws.stability import (
@@ -144,12 +145,9 @@ class PerturbedContact:
     def _space(self) -> LoadFree:
         """All load-free perturbations of the contact set."""
         contact = self._system.contact
-        coefficients = np.linalg.lstsq(dense(contact.basis), self._pressure, rcond=None)[0]
-        touching = coefficients > _PRESSING * coefficients.max()
-        if (self._pressure > 0).all():
-            touching[:] = True
-        space = load_free(contact.modes[touching], contact.force_modes[touching])
-        identity = np.eye(len(touching))[:, touching]
+        pressed = touching(contact, self._pressure)
+        space = load_free(contact.modes[pressed], contact.force_modes[pressed])
+        identity = np.eye(len(pressed))[:, pressed]
         return LoadFree(identity @ space.pressures, identity @ space.gaps)
 
     @cached_property
@@ -169,6 +167,14 @@ class PerturbedContact:
             slope = conditions.wear_slope(row, law, self._pressure)
             worn += spread.rate(slope[:, None] * pressed)
         return space.gaps.T @ (system.contact.weighted.T @ worn)
+
+
+def touching(contact: CondensedContact, pressure: np.ndarray) -> np.ndarray:
+    """Mask (m,) of the pressure coefficients that are positive under a pressure (n,)."""
+    if (pressure > 0).all():
+        return np.ones(contact.basis.shape[1], dtype=bool)
+    coefficients = np.linalg.lstsq(dense(contact.basis), pressure, rcond=None)[0]
+    return coefficients > _PRESSING * coefficients.max()
 
 
 def _secant(tried: list[tuple[float, float]]) -> float:

@@ -95,7 +95,7 @@ def build(
     coupled = coupled_without_condensation(choice, len(contacts.weights))
     made_from = made_from.solved_by(choice.name, coupled)
     with phases("assemble elasticity"):
-        glued = parts.get("glued", made_from.mesh, lambda: _glued(model, comm, kinematics, bodies))
+        glued = parts.get("glued", made_from.mesh, lambda: glued_pairings(model, comm, kinematics, bodies))
         elastic, trace = parts.get(
             "elasticity",
             made_from.elasticity,
@@ -203,7 +203,9 @@ def _paired_faces(
     return worn_contact_points(model, interface, kinematics, *moved, *faces)
 
 
-def _glued(model: Model, comm, kinematics: Kinematics, bodies: Bodies) -> list[Pairing]:
+def glued_pairings(
+    model: Model, comm, kinematics: Kinematics, bodies: Bodies
+) -> list[Pairing]:
     """Opposite points of the glued faces."""
     degree = model.discretisation.degree
     return [
@@ -228,18 +230,13 @@ def elastic_system(
     trace : csr_matrix, shape (n_owned, n)
         Bᵀ of the gap in the displacement spaces.
     """
-    hot = model.heat is not None
-    materials = {
-        part: ElasticMaterial(m.young_modulus, m.poisson_ratio, m.expansion if hot else 0.0)
-        for part, m in model.materials.items()
-    }
     degree = model.discretisation.degree
     clamped, symmetric, rollers, mid_plane = supports(model)
     elastic = elasticity(
         bodies,
         kinematics,
         degree,
-        materials,
+        elastic_materials(model),
         clamped,
         symmetric,
         rollers,
@@ -248,6 +245,15 @@ def elastic_system(
         joints=lambda spaces: elastic_joints(spaces, glued),
     )
     return elastic, gap_trace(elastic.spaces, contacts)
+
+
+def elastic_materials(model: Model) -> dict[str, ElasticMaterial]:
+    """Elastic materials by part; none expands in a model without heat."""
+    hot = model.heat is not None
+    return {
+        part: ElasticMaterial(m.young_modulus, m.poisson_ratio, m.expansion if hot else 0.0)
+        for part, m in model.materials.items()
+    }
 
 
 def supports(model: Model) -> tuple[tuple[str, ...], ...]:

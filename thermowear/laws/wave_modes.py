@@ -1,0 +1,248 @@
+"""Critical speeds and growth rates of waves, and the proof that none grows at lower speed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .waves import WaveEquations
+
+_TOLERANCE, _ITERATIONS = 1e-11, 40
+_DIFFERENCE = 1e-5
+"""Relative step of numerical derivatives of the logarithm of a gain."""
+_LARGEST_STEP = 0.7
+"""Largest change of the logarithm of a speed factor, and of a rate by its scale, in a step."""
+_ROUGH, _ROUNDS = 0.02, 40
+_RANGE = 1e-4, 1e6
+"""Rates that are scanned, relative to that of diffusion over a wave length."""
+_PER_DECADE = 4
+_TURN = 1.0
+"""Largest change of the phase of the determinant between neighbouring samples [rad]."""
+_BESIDE = 0.98
+_WEAR_STEPS = 8
+
+
+@dataclass(frozen=True)
+class WaveMode:
+    """Mode of a wave.
+
+    Attributes
+    ----------
+    factor : float
+        Speed factor.
+    rate : complex
+        Growth rate and angular frequency in the frame of the reference body [1/s].
+    shape : ndarray, shape (q,)
+        Complex pressure coefficients.
+    """
+
+    factor: float
+    rate: complex
+    shape: np.ndarray
+
+
+def first_critical(equations: WaveEquations, guess: float = 1.0) -> WaveMode | None:
+    """Mode of the lowest critical speed without wear; None if no wave grows at any speed.
+
+    Candidates stand still on one of the bodies, or nearly so; `lowest` finds others.
+
+    Parameters
+    ----------
+    equations : WaveEquations
+    guess : float
+        Speed factor near it, if known.
+    """
+    plain, found = equations.without_wear, []
+    for frame in equations.frames:
+        mode = _standing(plain, frame, guess)
+        if mode is not None:
+            found.append(mode)
+    return min(found, key=lambda mode: mode.factor, default=None)
+
+
+def lowest(equations: WaveEquations, mode: WaveMode) -> WaveMode:
+    """Mode of the lowest critical speed, by the number of growing waves below that of a candidate.
+
+    Without wear.
+    """
+    plain = equations.without_wear
+    below = _BESIDE * mode.factor
+    while growing(plain, below):
+        low, high = below / 2, below
+        while growing(plain, low) and low > 1e-3 * below:
+            low, high = low / 2, low
+        while high / low > 1.02:
+            middle = np.sqrt(low * high)
+            low, high = (low, middle) if growing(plain, middle) else (middle, high)
+        found = _from_samples(plain, high)
+        if found is None or found.factor >= _BESIDE * mode.factor:
+            break
+        mode, below = found, _BESIDE * found.factor
+    return mode
+
+
+def with_wear(equations: WaveEquations, mode: WaveMode) -> WaveMode | None:
+    """Critical mode with wear that develops from one without; None where it is not found.
+
+    The wear is increased step by step.
+    """
+    if not equations.worn:
+        return mode
+    plain = mode
+    for part in np.linspace(0.0, 1.0, _WEAR_STEPS + 1)[1:] ** 2:
+        worn = equations.with_wear_times(float(part))
+        following = _critical(worn, mode)
+        if following is None and mode is plain:
+            following = _departing(worn, plain)
+        if following is None:
+            return None
+        mode = following
+    return mode
+
+
+def at_speed(equations: WaveEquations, mode: WaveMode, factor: float) -> WaveMode | None:
+    """Mode at another speed that develops from a given one, with its growth rate."""
+    steps = max(1, int(np.ceil(abs(np.log(factor / mode.factor)) / 0.1)))
+    for part in np.geomspace(mode.factor, factor, steps + 1)[1:]:
+        following = _grown(equations, mode, float(part))
+        if following is None:
+            return None
+        mode = following
+    return mode
+
+
+def growing(equations: WaveEquations, factor: float) -> int:
+    """Number of growing waves at a speed factor, without wear (criterion of Nyquist).
+
+    The phase of the determinant of `WaveEquations` along the imaginary axis: conduction alone has
+    no growing modes, and the determinant tends to 1 for high rates.
+    """
+    _, values = _sampled(equations, factor)
+    turned = np.angle(values[1:] / values[:-1]).sum() + np.angle(values[0] / values[-1])
+    return int(round(-turned / (2 * np.pi)))
+
+
+def _sampled(equations: WaveEquations, factor: float) -> tuple[np.ndarray, np.ndarray]:
+    """Frequencies [rad/s], ascending, and determinants, dense where the phase changes quickly."""
+    low, high = np.log10(_RANGE)
+    sizes = equations.slowest * np.logspace(low, high, int((high - low) * _PER_DECADE))
+    frames = {-factor * frame for frame in equations.frames}
+    points = np.unique([f + sign * sizes for f in frames for sign in (-1.0, 1.0)])
+
+    def values_at(frequencies):
+        return [equations.determinant(factor, 1j * float(f)) for f in frequencies]
+
+    values = np.array(values_at(points))
+    for _ in range(12):
+        turns = np.abs(np.angle(values[1:] / values[:-1]))
+        wide = np.flatnonzero(turns > _TURN)
+        if not len(wide):
+            break
+        between = (points[wide] + points[wide + 1]) / 2
+        order = np.argsort(np.concatenate([points, between]), kind="stable")
+        points = np.concatenate([points, between])[order]
+        values = np.concatenate([values, values_at(between)])[order]
+    return points, values
+
+
+def _from_samples(equations: WaveEquations, factor: float) -> WaveMode | None:
+    """Critical mode near a speed factor at which a wave hardly grows."""
+    points, values = _sampled(equations, factor)
+    for k in np.argsort(np.abs(values))[:5]:
+        gains = equations.gains(factor, 1j * points[k])
+        one = int(np.argmin(np.abs(gains.values - 1.0)))
+        start = WaveMode(factor, 1j * points[k], gains.shapes[:, one])
+        found = _critical(equations, start)
+        if found is not None and abs(np.log(found.factor / factor)) < 0.1:
+            return found
+    return None
+
+
+def _standing(equations: WaveEquations, frame: float, factor: float) -> WaveMode | None:
+    """Critical mode that stands still on a body, or nearly so."""
+    for _ in range(_ROUNDS):
+        gain, shape = equations.gains(factor, -1j * factor * frame).largest
+        if gain.real <= 0.0:
+            return None
+        change = float(np.clip(1.0 / gain.real, 1e-2, 1e2))
+        factor *= change
+        if abs(change - 1.0) < _ROUGH:
+            break
+    return _critical(equations, WaveMode(factor, -1j * factor * frame, shape))
+
+
+def _departing(equations: WaveEquations, mode: WaveMode) -> WaveMode | None:
+    """Critical mode with little wear, from one that stands still on a worn body."""
+    found = []
+    for body in equations.worn:
+        for size in np.logspace(-4, 1, 6):
+            for sign in (1.0, -1.0):
+                rate = 1j * (sign * size * equations.slowest - mode.factor * body.turning)
+                one = _critical(equations, WaveMode(mode.factor, rate, mode.shape))
+                if one is not None and one.factor > 0.5 * mode.factor:
+                    found.append(one)
+    return min(found, key=lambda one: one.factor, default=None)
+
+
+def _critical(equations: WaveEquations, start: WaveMode) -> WaveMode | None:
+    """Mode of zero growth, by Newton's method for the speed and the frequency."""
+
+    def residual(x: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        factor, frequency = float(np.exp(x[0])), x[1] * scale
+        gain, shape = equations.gains(factor, 1j * frequency).like(shape)
+        value = np.log(gain)
+        return np.array([value.real, value.imag]), shape
+
+    scale = max(equations.slowest, abs(start.rate.imag))
+    x = np.array([np.log(start.factor), start.rate.imag / scale])
+    found = _newton(residual, x, start.shape)
+    if found is None:
+        return None
+    x, shape = found
+    return WaveMode(float(np.exp(x[0])), 1j * float(x[1] * scale), shape)
+
+
+def _grown(equations: WaveEquations, start: WaveMode, factor: float) -> WaveMode | None:
+    """Mode at a speed factor, by Newton's method for its rate."""
+
+    def residual(x: np.ndarray, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        gain, shape = equations.gains(factor, complex(*x) * scale).like(shape)
+        value = np.log(gain)
+        return np.array([value.real, value.imag]), shape
+
+    scale = max(equations.slowest, abs(start.rate))
+    x = np.array([start.rate.real, start.rate.imag]) / scale
+    found = _newton(residual, x, start.shape)
+    if found is None:
+        return None
+    x, shape = found
+    return WaveMode(factor, complex(*x) * scale, shape)
+
+
+def _newton(
+    residual: Callable[[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]],
+    x: np.ndarray,
+    shape: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Zero of a residual of two unknowns, whose derivatives are updated by Broyden's formula."""
+    value, shape = residual(x, shape)
+    columns = []
+    for axis in np.eye(2):
+        columns.append((residual(x + _DIFFERENCE * axis, shape)[0] - value) / _DIFFERENCE)
+    slopes = np.stack(columns, axis=1)
+    for _ in range(_ITERATIONS):
+        if np.abs(value).max() < _TOLERANCE:
+            return x, shape
+        if not np.isfinite(slopes).all() or abs(np.linalg.det(slopes)) < 1e-300:
+            return None
+        step = -np.linalg.solve(slopes, value)
+        step *= min(1.0, _LARGEST_STEP / np.abs(step).max())
+        x = x + step
+        following, shape = residual(x, shape)
+        if not np.isfinite(following).all():
+            return None
+        slopes += np.outer(following - value - slopes @ step, step) / (step @ step)
+        value = following
+    return (x, shape) if np.abs(value).max() < 1e-8 else None

@@ -1,0 +1,1 @@
+"""Hot spots: thermoelastic instability that varies along the sliding direction."""

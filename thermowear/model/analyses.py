@@ -28,6 +28,31 @@ class StaticAnalysis:
 
 
 @dataclass(frozen=True)
+class StabilityAnalysis(StaticAnalysis):
+    """Thermoelastic stability, along the sliding direction too if hot spots are asked for.
+
+    Attributes
+    ----------
+    hot_spots : tuple of int
+        Numbers of hot spots round the axis of an axisymmetric model.
+    wave_lengths : tuple of float
+        Wave lengths along the sliding, of a section that it is normal to [m].
+    mirror : tuple of str
+        Surfaces in the mirror plane of a half model: modes may be antisymmetric about it.
+    """
+
+    type: Literal["stability"] = "stability"
+    hot_spots: tuple[int, ...] = ()
+    wave_lengths: tuple[float, ...] = ()
+    mirror: tuple[str, ...] = ()
+
+    @property
+    def waves(self) -> tuple[float, ...]:
+        """Numbers round the axis, or wave numbers along the sliding [1/m]."""
+        return self.hot_spots or tuple(2 * math.pi / length for length in self.wave_lengths)
+
+
+@dataclass(frozen=True)
 class SteppedAnalysis:
     """Base of analyses that follow the wear.
 

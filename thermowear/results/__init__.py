@@ -1,5 +1,6 @@
 """Results of a run: tables and summary, and the name, label and unit of each quantity."""
 
+from .hot_spots import GrowthRow, HotSpotFields, HotSpotMode, HotSpotRow
 from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack
 from .quantity import TABLES
 from .result import (
@@ -8,6 +9,7 @@ from .result import (
     BodyFields,
     Frame,
     FrictionHistory,
+    HotSpots,
     MixedFields,
     Result,
     TrackHistory,

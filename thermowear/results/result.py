@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .hot_spots import GrowthRow, HotSpotMode, HotSpotRow
 from .points import FrictionInterface, InterfaceFields, Modes, Profile, WornTrack, by_contact
 from .quantity import from_key, table_of
 from .rows import (
@@ -49,6 +50,25 @@ class FrictionHistory:
     sticking: list[StickRow] = field(default_factory=list)
     holders: list[HolderRow] = field(default_factory=list)
     tangential: list[TangentialRow] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class HotSpots:
+    """Results of a search for hot spots.
+
+    Attributes
+    ----------
+    rows : list of HotSpotRow
+        Critical speeds by number and symmetry.
+    growth : list of GrowthRow
+        First hot spots over the speed.
+    first : HotSpotMode or None
+        Mode of the first hot spots, on rank 0 only.
+    """
+
+    rows: list[HotSpotRow]
+    growth: list[GrowthRow]
+    first: HotSpotMode | None
 
 
 @dataclass(frozen=True)
@@ -182,6 +202,8 @@ class Result:
         Ranges of the points of each contact of several bodies, by name; empty for a pair.
     contact_history : list of ContactRow
         Contacts of several bodies at the steps of a transient analysis.
+    hot_spots : HotSpots or None
+        Results of a stability analysis with hot spots.
     """
 
     interface: InterfaceFields
@@ -197,6 +219,7 @@ class Result:
     fields: AnyFields | None = None
     contacts: dict[str, slice] = field(default_factory=dict)
     contact_history: list[ContactRow] = field(default_factory=list)
+    hot_spots: HotSpots | None = None
 
     def tables(self) -> dict[str, Any]:
         """Tables by the names of their files without ``.csv``: points at the end, or rows.
@@ -211,6 +234,8 @@ class Result:
             at_points.append(friction.last)
             rows += [friction.rows, friction.cycles, friction.sticking, friction.holders]
             rows.append(friction.tangential)
+        if self.hot_spots is not None:
+            rows += [self.hot_spots.rows, self.hot_spots.growth]
         if self.track is not None:
             at_points.append(self.track.last)
         of_contacts = {

@@ -15,6 +15,7 @@ from ..model.analyses import (
     Analysis,
     FrettingAnalysis,
     ReciprocatingAnalysis,
+    StabilityAnalysis,
     StaticAnalysis,
     TransientAnalysis,
 )
@@ -140,9 +141,9 @@ class ScriptedModel:
         """Steady state of wear."""
         return self._solved(StaticAnalysis("steady"), observer)
 
-    def stability(self, observer: Observer | None = None) -> ModelSolution:
-        """Thermoelastic stability: critical speeds and modes."""
-        return self._solved(StaticAnalysis("stability"), observer)
+    def stability(self, observer: Observer | None = None, **settings: Any) -> ModelSolution:
+        """Thermoelastic stability; settings are attributes of `model.analyses.StabilityAnalysis`."""
+        return self._solved(StabilityAnalysis(**settings), observer)
 
     def transient(
         self, until: Any, observer: Observer | None = None, **settings: Any

@@ -40,6 +40,8 @@ class AssemblyGeometry(Section):
         Fraction of the circumference covered by the bodies of an axisymmetric model.
     rings : tuple of str
         Bodies whose whole ring passes through that sector.
+    mirror : tuple of str
+        Surfaces in a plane about which modes of instability may also be antisymmetric.
     sized : bool
         True if the mesh has the sizes ``mesh.size`` and ``mesh.contact_size``.
     mesh_files : str or None
@@ -54,6 +56,7 @@ class AssemblyGeometry(Section):
     thickness_factor: ClassVar[float | None] = None
     sector: ClassVar[float] = 1.0
     rings: ClassVar[tuple[str, ...]] = ()
+    mirror: ClassVar[tuple[str, ...]] = ()
     from_file: ClassVar[bool] = False
     sized: ClassVar[bool] = False
     mesh_files: ClassVar[str | None] = None

@@ -102,10 +102,56 @@ class Reciprocating(Timed):
         return self
 
 
+MOST_HOT_SPOTS = 200
+"""Largest number of hot spots round an axis."""
+HotSpotNumber = Annotated[int, Field(ge=0, le=MOST_HOT_SPOTS, strict=True)]
+
+
+def _each_once(numbers: tuple[float, ...]) -> tuple[float, ...]:
+    """Reject numbers that are given twice."""
+    twice = [number for number, count in Counter(numbers).items() if count > 1]
+    if twice:
+        raise ValueError(f"contains {twice[0]:g} twice")
+    return numbers
+
+
 class Stability(OneWay):
-    """Thermoelastic instability of the contact: critical speed and unstable mode."""
+    """Thermoelastic instability of the contact: critical speed and unstable mode.
+
+    Attributes
+    ----------
+    hot_spots : int, or tuple of int
+        Numbers of hot spots round the axis to search: 0 to a largest number, or those of a list.
+    wave_lengths : tuple of float
+        Wave lengths along the sliding, of a section that it is normal to [m].
+    mirror : str, or tuple of str, or None
+        Surfaces in the mirror plane of a half model, by default that of the geometry.
+    """
 
     type: Literal["stability"]
+    hot_spots: HotSpotNumber | Annotated[tuple[HotSpotNumber, ...], AfterValidator(_each_once)] = ()
+    wave_lengths: Annotated[tuple[units.Length, ...], AfterValidator(_each_once)] = ()
+    mirror: str | tuple[str, ...] | None = None
+
+    @model_validator(mode="after")
+    def _of_one_kind(self):
+        if self.numbers and self.wave_lengths:
+            raise KeyFault("wave_lengths", "only one of hot_spots and wave_lengths can be given")
+        if self.mirror is not None and not (self.numbers or self.wave_lengths):
+            raise KeyFault("mirror", "needs hot_spots or wave_lengths")
+        return self
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """Numbers of hot spots to search."""
+        if isinstance(self.hot_spots, int):
+            return tuple(range(self.hot_spots + 1))
+        return self.hot_spots
+
+    @property
+    def mirrors(self) -> tuple[str, ...] | None:
+        """Surfaces in the mirror plane; None if not given."""
+        return (self.mirror,) if isinstance(self.mirror, str) else self.mirror
 
 
 _JUMP = number_or(

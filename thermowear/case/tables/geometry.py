@@ -82,6 +82,8 @@ class Geometry(Section):
         True if the mesh has the sizes ``mesh.size`` and ``mesh.contact_size``.
     symmetry, rollers, mid_plane : tuple of str
         Surfaces that cannot move along x, y or z, but freely in their planes.
+    mirror : tuple of str
+        Those of a plane about which modes of instability may also be antisymmetric.
     press_direction : tuple of float
         Unit vector of the load direction of body 1, towards body 2.
     pivot_point : tuple of float or None
@@ -128,6 +130,7 @@ class Geometry(Section):
     symmetry: ClassVar[tuple[str, ...]] = ()
     rollers: ClassVar[tuple[str, ...]] = ()
     mid_plane: ClassVar[tuple[str, ...]] = ()
+    mirror: ClassVar[tuple[str, ...]] = ()
     press_direction: ClassVar[tuple[float, ...]] = (0.0, -1.0)
     pivot_point: ClassVar[tuple[float, ...] | None] = None
     rotation_center: ClassVar[tuple[float, float] | None] = None

@@ -41,7 +41,8 @@ from .checks import (
     require_support,
 )
 from .positioning import prepare
-from .static import initial, stability, steady
+from .stability import stability
+from .static import initial, steady
 from .transient import TransientHistory
 from .wearing_faces import wearing_faces
 
@@ -137,7 +138,7 @@ def analyse(
                 "nothing opposite and stays out of the contact"
             )
     if isinstance(analysis, StaticAnalysis):
-        end, result = _STATIC[analysis.type](system, observer)
+        end, result = _STATIC[analysis.type](system, analysis, observer)
     else:
         before = None if saved is None else saved.of(system)
         history = _STEPPED[type(analysis)](system, analysis, observer)
@@ -223,9 +224,9 @@ def balanced(result: Result) -> Result:
     return replace(result, stopped=result.stopped or judged(result.summary))
 
 
-_STATIC: dict[str, Callable[[System, Observer], tuple[Snapshot, Result]]] = {
-    "initial": initial,
-    "steady": steady,
+_STATIC: dict[str, Callable[..., tuple[Snapshot, Result]]] = {
+    "initial": lambda system, _, observer: initial(system, observer),
+    "steady": lambda system, _, observer: steady(system, observer),
     "stability": stability,
 }
 _STEPPED: dict[type, Callable[..., AnalysisHistory]] = {

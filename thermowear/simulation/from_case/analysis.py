@@ -12,6 +12,7 @@ from ...model.analyses import (
     Analysis,
     FrettingAnalysis,
     ReciprocatingAnalysis,
+    StabilityAnalysis,
     StaticAnalysis,
     TransientAnalysis,
 )
@@ -35,6 +36,11 @@ def analysis_of(case: AnyCase) -> Analysis:
     if isinstance(given, tables.Fretting):
         found = attributes(FrettingAnalysis, given) | kept | {"cycles": int(case.cycles or 1)}
         return FrettingAnalysis(**found, max_jump=longest)
+    if isinstance(given, tables.Stability):
+        mirror = case.geometry.mirror if given.mirrors is None else given.mirrors
+        return StabilityAnalysis(
+            hot_spots=given.numbers, wave_lengths=given.wave_lengths, mirror=mirror
+        )
     if not isinstance(given, tables.Reciprocating):
         return StaticAnalysis(given.type)
     motion = case.reciprocation

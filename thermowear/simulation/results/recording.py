@@ -237,8 +237,8 @@ def sample(snapshot: Snapshot) -> AnyFields | None:
     found = system.bodies.in_file_order(
         [
             (
-                _body_of_cells(system, body),
-                *_evaluated(body.mesh, GRIDS[body.cell_type](n)[0], fields),
+                body_of_cells(system, body),
+                *sampled(body.mesh, GRIDS[body.cell_type](n)[0], fields),
             )
             for body, fields in zip(system.bodies.each, wanted, strict=True)
         ]
@@ -275,7 +275,7 @@ def _fields(
     return BodyFields(points, pieces, body, displacement, absolute, mises[..., 0])
 
 
-def _evaluated(mesh, grid: np.ndarray, fields: list) -> list[np.ndarray]:
+def sampled(mesh, grid: np.ndarray, fields: list) -> list[np.ndarray]:
     """Coordinates and fields on a grid in each owned cell, (n_cells, n_points, components)."""
     cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
     centre = grid.mean(axis=0)
@@ -284,7 +284,7 @@ def _evaluated(mesh, grid: np.ndarray, fields: list) -> list[np.ndarray]:
     return values + [evaluate(fem.Expression(field, inside), mesh, cells) for field in fields]
 
 
-def _body_of_cells(system: System, body: BodyMesh) -> np.ndarray:
+def body_of_cells(system: System, body: BodyMesh) -> np.ndarray:
     """Number of the body (from 1) that each owned cell belongs to."""
     bodies = enumerate(system.model.bodies, start=1)
     numbers = {part: number for number, each in bodies for part in each.parts}

@@ -14,9 +14,11 @@ from ...results import (
     CycleRow,
     Frame,
     FrictionInterface,
+    GrowthRow,
     HeatRow,
     HistoryRow,
     HolderRow,
+    HotSpotRow,
     InterfaceFields,
     LoadRow,
     StickRow,
@@ -26,9 +28,10 @@ from ...results import (
 from ...serialise import serialisable
 from ..system.system import System
 
-AnyRow = (
+TimedRow = (
     HistoryRow | HeatRow | ContactRow | LoadRow | CycleRow | StickRow | HolderRow | TangentialRow
 )
+AnyRow = TimedRow | HotSpotRow | GrowthRow
 
 _ROUNDING = 1e-9  # relative to the contact's length
 
@@ -137,7 +140,7 @@ class Observer:
         """A row of a table, at a distance from the steady pressure (NaN without one).
 
         It records an accepted step of a transient analysis, the heat balance of that step, an
-        increment or a cycle of a fretting analysis.
+        increment or a cycle of a fretting analysis, a mode of hot spots.
         """
 
     def note(self, text: str) -> None:

@@ -98,6 +98,7 @@ class DiskBrake(PadsOnDisk, Stacked):
     models = ("axisymmetric",)
     widest_pad = 360.0
     rollers = ("disk_middle",)
+    mirror = ("disk_middle",)
 
     type: Literal["disk-brake"]
 

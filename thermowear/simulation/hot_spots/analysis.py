@@ -1,0 +1,201 @@
+"""Search for hot spots: critical speeds of all numbers, growth and fields of the first ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...errors import CaseError, ComputationError
+from ...model.analyses import StabilityAnalysis
+from ...model.model import Model
+from ...results import GrowthRow, HotSpotRow, HotSpots, Result
+from ..results.recording import Snapshot
+from ..runtime.observer import Observer
+from ..system.building import build
+from ..system.system import System
+from .mode_fields import SIGNS, mode_fields
+from .search import CriticalWaves, growth, refined, search
+from .supports import Symmetry
+from .wave_model import WaveModel
+
+_NAN = float("nan")
+_COARSE = 0.01
+"""Error estimate from which the mesh is reported as too coarse."""
+
+
+def hot_spots(
+    end: Snapshot,
+    analysis: StabilityAnalysis,
+    observer: Observer,
+    base: Callable[[System, Observer], tuple[Snapshot, Result]],
+) -> tuple[dict[str, Any], HotSpots]:
+    """Summary entries and tables of the hot spots of an unperturbed state. Every rank calls.
+
+    Parameters
+    ----------
+    end : Snapshot
+        Unperturbed state.
+    analysis : StabilityAnalysis
+    observer : Observer
+    base : callable
+        Unperturbed state of another discretisation, for the error estimate.
+
+    Raises
+    ------
+    CaseError
+        If the model has no waves along the sliding.
+    ComputationError
+    """
+    require_waves(end.system, analysis)
+    model = _wave_model(end, analysis)
+    symmetries: list[Symmetry] = ["symmetric", "antisymmetric"] if analysis.mirror else ["whole"]
+    found = search(model, analysis.waves, symmetries)
+    rows = [_row(model, analysis, one) for one in found]
+    spots = [one for one in found if one.number > 0]
+    for row in rows:
+        observer.row(row, _NAN)
+    extra = _summary(model, found, "mode") | _summary(model, spots, "hot_spots")
+    first = min(spots, key=lambda one: one.factor, default=None)
+    if first is None or first.without_wear is None:
+        observer.note("no hot spots grow at any speed: the bodies expand too little")
+        return extra, HotSpots(rows, [], None)
+    extra |= _error_estimate(end, analysis, observer, base, first)
+    curve = [_growth_row(*one) for one in growth(model, first)]
+    for step in curve:
+        observer.row(step, _NAN)
+    waves = model.at(first.number, first.symmetry)
+    return extra, HotSpots(rows, curve, mode_fields(model, waves, first.without_wear))
+
+
+def require_waves(system: System, analysis: StabilityAnalysis) -> None:
+    """Reject models without waves along the sliding.
+
+    Raises
+    ------
+    CaseError
+    """
+    model = system.model
+    ring = model.kinematics == "axisymmetric"
+    if ring != bool(analysis.hot_spots):
+        wanted = "an axisymmetric model" if analysis.hot_spots else "a plane-strain model"
+        key = "hot_spots" if analysis.hot_spots else "wave_lengths"
+        raise CaseError(f"analysis.{key}: needs {wanted}; found model = {model.kinematics!r}")
+    if model.kinematics not in ("axisymmetric", "plane-strain"):
+        raise CaseError(
+            f"analysis.wave_lengths: found model = {model.kinematics!r}; waves along the sliding "
+            "need a plane-strain section"
+        )
+    if not ring and any(not (i.motion.at_rest or i.motion.across) for i in model.interfaces):
+        raise CaseError(
+            "analysis.wave_lengths: a body slides within the section; waves along the sliding need "
+            "a section normal to it (across = true)"
+        )
+    if system.thermal is None or system.thermal.conduction.capacity is None:
+        raise ComputationError(
+            "hot spots move on at least one body; they need density and specific_heat of all bodies"
+        )
+    unknown = set(analysis.mirror) - set(system.bodies.each[0].surfaces)
+    if unknown:
+        raise CaseError(f"analysis.mirror: found {sorted(unknown)[0]!r}; it is no surface")
+    guided = {*model.symmetry, *(s for b in model.bodies for s in b.rollers)}
+    if set(analysis.mirror) - guided:
+        raise CaseError(
+            f"analysis.mirror: {sorted(set(analysis.mirror) - guided)[0]} is no plane of symmetry; "
+            "its normal displacement must vanish (symmetry or rollers)"
+        )
+
+
+def _wave_model(end: Snapshot, analysis: StabilityAnalysis) -> WaveModel:
+    return WaveModel(end.system, end.contact.pressure, end.contact.conditions, analysis.mirror)
+
+
+def _row(model: WaveModel, analysis: StabilityAnalysis, one: CriticalWaves) -> HotSpotRow:
+    """Row of the table of critical speeds."""
+    m, plain, worn = model.wave_number(one.number), one.without_wear, one.with_wear
+    frequency = _NAN if plain is None else plain.rate.imag
+    wears = bool(model.system.laws)
+    return HotSpotRow(
+        number=round(one.number) if analysis.hot_spots else 1,
+        wave_number=m,
+        symmetry=SIGNS[one.symmetry],
+        speed_factor=_finite(one.factor),
+        frequency=frequency,
+        drift=-frequency / m if m else 0.0,
+        speed_factor_with_wear=_finite(one.worn_factor) if wears else _NAN,
+        frequency_with_wear=_NAN if worn is None or not wears else worn.rate.imag,
+    )
+
+
+def _growth_row(factor: float, plain, worn) -> GrowthRow:
+    rates = [complex(_NAN, _NAN) if mode is None else mode.rate for mode in (plain, worn)]
+    (rate, own), (with_wear, worn_own) = ((r.real, r.imag) for r in rates)
+    return GrowthRow(factor, rate, own, with_wear, worn_own)
+
+
+def _finite(value: float) -> float:
+    return value if np.isfinite(value) else _NAN
+
+
+def _summary(model: WaveModel, found: list[CriticalWaves], name: str) -> dict[str, Any]:
+    """Summary entries of the first mode, or of the first hot spots, without and with wear."""
+    entries: dict[str, Any] = {}
+    kinds = [("", lambda one: one.factor)]
+    if model.system.laws:
+        kinds.append(("_with_wear", lambda one: one.worn_factor))
+    for which, factor in kinds:
+        first = min(found, key=factor, default=None)
+        if first is None or not np.isfinite(factor(first)):
+            continue
+        mode = first.with_wear if which else first.without_wear
+        assert mode is not None
+        m = model.wave_number(first.number)
+        entries |= {
+            f"first_{name}{which}_number": first.number if model.radius is None else int(first.number),
+            f"first_{name}{which}_symmetry": first.symmetry,
+            f"first_{name}{which}_speed_factor": mode.factor,
+            f"first_{name}{which}_drift_m_per_s": -mode.rate.imag / m if m else 0.0,
+            **_speeds(model.system.model, f"first_{name}{which}", mode.factor),
+        }
+    return entries
+
+
+def _speeds(model: Model, name: str, factor: float) -> dict[str, float]:
+    """Critical speed of the fastest contact [m/s, rad/s]."""
+    motions = [interface.motion for interface in model.interfaces]
+    velocities = [abs(m.velocity) for m in motions if m.velocity is not None]
+    turning = [abs(m.angular_velocity) for m in motions if m.angular_velocity is not None]
+    found = {}
+    if velocities:
+        found[f"{name}_speed_m_per_s"] = factor * max(velocities)
+    if turning:
+        found[f"{name}_angular_velocity_rad_per_s"] = factor * max(turning)
+    return found
+
+
+def _error_estimate(
+    end: Snapshot,
+    analysis: StabilityAnalysis,
+    observer: Observer,
+    base: Callable[[System, Observer], tuple[Snapshot, Result]],
+    first: CriticalWaves,
+) -> dict[str, Any]:
+    """Relative change of the first critical speed by elements of one degree more."""
+    system, discretisation = end.system, end.system.model.discretisation
+    finer = replace(discretisation, degree=discretisation.degree + 1, positioning=False)
+    try:
+        other = build(replace(system.model, discretisation=finer), system.comm, system.phases)
+        factor = refined(_wave_model(base(other, observer)[0], analysis), first)
+    except (CaseError, ComputationError) as error:
+        return {"error_estimate_missing": {"first_hot_spots": str(error)}}
+    if factor is None:
+        return {"error_estimate_missing": {"first_hot_spots": "no mode on finer elements"}}
+    error = abs(factor / first.factor - 1.0)
+    if error > _COARSE:
+        observer.note(
+            f"the critical speed of hot spots is uncertain by about {100 * error:.2g} %; refine the "
+            "mesh: more elements, a higher degree, or thinner rows at the contact (mesh.skin)"
+        )
+    return {"first_hot_spots_error_estimate_relative": error}

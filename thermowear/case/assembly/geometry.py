@@ -44,6 +44,8 @@ class AssemblyGeometry(Section):
         Surfaces in a plane about which modes of instability may also be antisymmetric.
     sized : bool
         True if the mesh has the sizes ``mesh.size`` and ``mesh.contact_size``.
+    has_skin : bool
+        True if the mesh has rows along the contact faces, the first as high as ``mesh.skin``.
     mesh_files : str or None
         Paths of the mesh files, for messages; None if the mesh is made by the program.
     """
@@ -59,6 +61,7 @@ class AssemblyGeometry(Section):
     mirror: ClassVar[tuple[str, ...]] = ()
     from_file: ClassVar[bool] = False
     sized: ClassVar[bool] = False
+    has_skin: ClassVar[bool] = False
     mesh_files: ClassVar[str | None] = None
 
     type: str

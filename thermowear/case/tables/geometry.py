@@ -80,6 +80,8 @@ class Geometry(Section):
         True if the mesh was made elsewhere and therefore has to be checked like the case.
     sized : bool
         True if the mesh has the sizes ``mesh.size`` and ``mesh.contact_size``.
+    has_skin : bool
+        True if the mesh has rows along the contact faces, the first as high as ``mesh.skin``.
     symmetry, rollers, mid_plane : tuple of str
         Surfaces that cannot move along x, y or z, but freely in their planes.
     mirror : tuple of str
@@ -127,6 +129,7 @@ class Geometry(Section):
     slides_across: ClassVar[bool] = False
     from_file: ClassVar[bool] = False
     sized: ClassVar[bool] = False
+    has_skin: ClassVar[bool] = False
     symmetry: ClassVar[tuple[str, ...]] = ()
     rollers: ClassVar[tuple[str, ...]] = ()
     mid_plane: ClassVar[tuple[str, ...]] = ()

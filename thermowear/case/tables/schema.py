@@ -56,6 +56,9 @@ class MeshTable(Section):
         Largest element size of bodies from CAD; None: a small part of the size of each body [m].
     contact_size : float or None
         Element size on contact faces of bodies from CAD; None: half of the largest one [m].
+    skin : float or None
+        Height of the first row of elements at the contact faces, where they are thicker otherwise
+        [m].
     solver : str
         Linear solver of bodies in space: ``auto`` (by size), ``direct`` or ``multigrid``.
     bodies : dict of str to FaceMesh
@@ -72,6 +75,7 @@ class MeshTable(Section):
     grading: Grading = 0.3
     size: Length | None = None
     contact_size: Length | None = None
+    skin: Length | None = None
     solver: Literal["auto", "direct", "multigrid"] = "auto"
     bodies: dict[str, FaceMesh] = {}
     accuracy: Percentage | None = None
@@ -80,6 +84,10 @@ class MeshTable(Section):
         """Number of elements along the contact, and grading, of one body."""
         own = self.bodies.get(body, FaceMesh())
         return own.elements or self.elements, own.grading or self.grading
+
+    def row(self, height: float) -> float:
+        """Height of the first row of elements at a contact face, one without `skin` given [m]."""
+        return height if self.skin is None else min(height, self.skin)
 
     def sizes(self, body: str) -> tuple[float | None, float | None]:
         """Largest element size of one body, and that on its contact faces [m]."""

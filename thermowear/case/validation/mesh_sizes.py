@@ -1,4 +1,4 @@
-"""Consistency checks of the element sizes of bodies from CAD."""
+"""Consistency checks of element sizes: of bodies from CAD, and of rows at contact faces."""
 
 from __future__ import annotations
 
@@ -13,6 +13,12 @@ _KEYS = ("size", "contact_size")
 
 def mesh_sizes(case: Case | AssemblyCase) -> Iterator[Fault]:
     """Sizes are those of meshes made by the program of bodies from CAD, finer at the contact."""
+    if case.mesh.skin is not None and not case.geometry.has_skin:
+        yield (
+            "mesh.skin",
+            f"the mesh of {case.geometry.name!r} has no rows along its contact faces; remove this "
+            "key",
+        )
     tables = {"mesh": case.mesh} | {f"mesh.bodies.{b}": t for b, t in case.mesh.bodies.items()}
     if not case.geometry.sized:
         for path, table in tables.items():

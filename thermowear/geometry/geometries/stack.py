@@ -55,6 +55,7 @@ class Stack(AssemblyGeometry):
 
     name = "stack"
     models = ("axisymmetric", "plane-strain", "plane-stress")
+    has_skin = True
 
     type: Literal["stack"]
     layers: dict[str, LayerTable]
@@ -110,4 +111,4 @@ class Stack(AssemblyGeometry):
         return (0.0, 1.0) if surface.endswith("_bottom") else (0.0, -1.0)
 
     def build(self, mesh):
-        return stacked_layers(self._layers, mesh.face)
+        return stacked_layers(self._layers, mesh.face, mesh.row)

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -18,6 +19,9 @@ from ...case.values.units import Length
 from ..mesh.tagged import TaggedMesh
 from ..meshing.cells import Sheet, between, both, every, grid, level, mesh_body, tagged_bodies
 from ..meshing.divisions import SAME, divided_face, growing, growing_from_both, joined
+
+FirstRow: TypeAlias = "Callable[[float], float]"
+"""Height of the first row at the face by that without a thinner skin [m]."""
 
 _THIN_ROWS = 3
 """Graded rows of stacked blocks at the contact, for the thermal boundary layer and waves on it."""
@@ -43,6 +47,8 @@ class Stacked(Geometry):
     cell_order : int
         Geometric order of the cells.
     """
+
+    has_skin = True
 
     @property
     def cell_order(self) -> int:
@@ -76,8 +82,8 @@ class Stacked(Geometry):
     def build(self, mesh, zone=None) -> TaggedMesh:
         (first, upper), (second, lower) = zip(self.bodies, (self.upper, self.lower), strict=True)
         ends = {
-            first: self._upper(zone, *mesh.face(first)),
-            second: self._lower(zone, *mesh.face(second)),
+            first: self._upper(zone, *mesh.face(first), mesh.row),
+            second: self._lower(zone, *mesh.face(second), mesh.row),
         }
         at_face = level(1, 0.0)
         claims = [at_face, level(1, upper.height), level(0, upper.left), level(0, upper.right)]
@@ -88,19 +94,24 @@ class Stacked(Geometry):
             dict(zip(self.surfaces, claims, strict=False)),
         )
 
-    def _upper(self, zone, elements: int, grading: float) -> tuple[np.ndarray, np.ndarray]:
+    def _upper(
+        self, zone, elements: int, grading: float, row: FirstRow
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Columns and rows of body 1."""
         columns = self._face(elements, grading, zone)
         contact, support, largest = self._sizes(columns, elements)
-        rows = growing_from_both(0.0, self.upper.height, (contact, support), grading, largest)
+        rows = growing_from_both(0.0, self.upper.height, (row(contact), support), grading, largest)
         return columns, rows
 
-    def _lower(self, zone, elements: int, grading: float) -> tuple[np.ndarray, np.ndarray]:
+    def _lower(
+        self, zone, elements: int, grading: float, row: FirstRow
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Columns and rows of body 2."""
         face = self._lower_face(elements, grading, zone)
         contact, support, largest = self._sizes(face, elements)
         before, after = self._beside((contact, support, largest), elements, grading)
-        rows = growing_from_both(-self.lower.height, 0.0, (support, contact), grading, largest)
+        first = support, row(contact)
+        rows = growing_from_both(-self.lower.height, 0.0, first, grading, largest)
         return joined(before, face, after), rows
 
     def _beside(
@@ -155,6 +166,7 @@ class StackedBlocks(PlaneGeometry):
     held = "upper_top"
     fixed = "lower_bottom"
     slides_across = True
+    has_skin = True
 
     type: Literal["stacked-blocks"]
     width: Length
@@ -170,7 +182,8 @@ class StackedBlocks(PlaneGeometry):
         for body, end in zip(self.bodies, ends, strict=True):
             elements, grading = mesh.face(body)
             largest = abs(end) / elements
-            rows = growing(0.0, end, largest * grading**_THIN_ROWS, grading, largest)
+            thin = mesh.row(largest * grading**_THIN_ROWS)
+            rows = growing(0.0, end, thin, grading, largest)
             columns = np.linspace(0.0, self.width, elements + 1)
             blocks[body] = mesh_body([Sheet(grid(columns, rows))], order=1)
             claims += [level(1, 0.0), level(1, end), every]

@@ -37,7 +37,9 @@ class Layer:
 
 
 def stacked_layers(
-    layers: Mapping[str, Layer], face: Callable[[str], tuple[int, float]]
+    layers: Mapping[str, Layer],
+    face: Callable[[str], tuple[int, float]],
+    row: Callable[[float], float],
 ) -> TaggedMesh:
     """Mesh layers from the top downwards; the first one ends at y = 0.
 
@@ -49,6 +51,8 @@ def stacked_layers(
     layers : mapping of str to Layer
     face : callable
         Number of elements along the widest layer, and grading, of a body.
+    row : callable
+        Height of the first row at a face between layers by that of the thinnest column [m].
     """
     bodies: dict[str, MeshedBody] = {}
     surfaces: dict[str, Claim] = {}
@@ -56,7 +60,7 @@ def stacked_layers(
     for name, layer, span, (over, under) in _placed(layers):
         elements, grading = face(name)
         columns = _columns(layer, layers, elements, grading)
-        largest, thin = _LARGEST * widest / elements, float(np.diff(columns).min())
+        largest, thin = _LARGEST * widest / elements, row(float(np.diff(columns).min()))
         rows = _rows(span, (over is not None, under is not None), thin, largest, grading)
         bodies[name] = mesh_body([Sheet(grid(columns, rows))], 1)
         surfaces |= _surfaces(name, layer, span, over, under)

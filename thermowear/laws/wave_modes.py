@@ -15,13 +15,14 @@ _DIFFERENCE = 1e-5
 _LARGEST_STEP = 0.7
 """Largest change of the logarithm of a speed factor, and of a rate by its scale, in a step."""
 _ROUGH, _ROUNDS = 0.02, 40
-_RANGE = 1e-4, 1e6
-"""Rates that are scanned, relative to that of diffusion over a wave length."""
-_PER_DECADE = 4
+_RANGE, _PER_DECADE = (-3, 5), 3
+"""Decades of the rates that are scanned, relative to that of diffusion over a wave length."""
+_BESIDE_OTHERS = (-1, 4), 2
+"""The same of rates in the frames of the other bodies."""
 _TURN = 1.0
 """Largest change of the phase of the determinant between neighbouring samples [rad]."""
 _BESIDE = 0.98
-_WEAR_STEPS = 8
+_WEAR_STEPS, _NEAR = 8, 0.1
 
 
 @dataclass(frozen=True)
@@ -73,7 +74,7 @@ def lowest(equations: WaveEquations, mode: WaveMode) -> WaveMode:
         low, high = below / 2, below
         while growing(plain, low) and low > 1e-3 * below:
             low, high = low / 2, low
-        while high / low > 1.02:
+        while high / low > 1.1:
             middle = np.sqrt(low * high)
             low, high = (low, middle) if growing(plain, middle) else (middle, high)
         found = _from_samples(plain, high)
@@ -90,7 +91,9 @@ def with_wear(equations: WaveEquations, mode: WaveMode) -> WaveMode | None:
     """
     if not equations.worn:
         return mode
-    plain = mode
+    plain, whole = mode, _critical(equations, mode)
+    if whole is not None and abs(np.log(whole.factor / mode.factor)) < _NEAR:
+        return whole
     for part in np.linspace(0.0, 1.0, _WEAR_STEPS + 1)[1:] ** 2:
         worn = equations.with_wear_times(float(part))
         following = _critical(worn, mode)
@@ -126,10 +129,12 @@ def growing(equations: WaveEquations, factor: float) -> int:
 
 def _sampled(equations: WaveEquations, factor: float) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies [rad/s], ascending, and determinants, dense where the phase changes quickly."""
-    low, high = np.log10(_RANGE)
-    sizes = equations.slowest * np.logspace(low, high, int((high - low) * _PER_DECADE))
-    frames = {-factor * frame for frame in equations.frames}
-    points = np.unique([f + sign * sizes for f in frames for sign in (-1.0, 1.0)])
+    points = []
+    for frame in equations.frames:
+        (low, high), density = (_RANGE, _PER_DECADE) if frame == 0.0 else _BESIDE_OTHERS
+        sizes = equations.slowest * np.logspace(low, high, (high - low) * density + 1)
+        points += [-factor * frame - sizes, -factor * frame + sizes]
+    points = np.unique(np.concatenate(points))
 
     def values_at(frequencies):
         return [equations.determinant(factor, 1j * float(f)) for f in frequencies]
@@ -155,7 +160,7 @@ def _from_samples(equations: WaveEquations, factor: float) -> WaveMode | None:
         one = int(np.argmin(np.abs(gains.values - 1.0)))
         start = WaveMode(factor, 1j * points[k], gains.shapes[:, one])
         found = _critical(equations, start)
-        if found is not None and abs(np.log(found.factor / factor)) < 0.1:
+        if found is not None and abs(np.log(found.factor / factor)) < 0.2:
             return found
     return None
 

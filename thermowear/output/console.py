@@ -243,6 +243,9 @@ def _highlights(summary: dict):
     for which, label in (("", ""), ("_with_wear", " with wear")):
         if exists(f"critical_speed_factor{which}"):
             yield f"critical speed{label}", _critical(summary, which)
+    for which, label in (("", ""), ("_with_wear", " with wear")):
+        if exists(f"first_hot_spots{which}_number"):
+            yield f"first hot spots{label}", _hot_spots(summary, f"first_hot_spots{which}")
     if exists("growth_rate_per_s"):
         yield "pressure perturbations", _growing(summary)
     if exists("distance_from_steady"):
@@ -268,6 +271,20 @@ def _critical(summary: dict, which: str) -> str:
     turning = summary[f"critical_angular_velocity{which}_rad_per_s"]
     critical = f"{turning:.4g} rad/s" if speed is None else f"{speed * 1e3:.4g} mm/s"
     return f"{critical}; this case: {part:.3g} times the critical speed"
+
+
+def _hot_spots(summary: dict, name: str) -> str:
+    """Number and symmetry of the first hot spots, and their critical speed."""
+    number, symmetry = summary[f"{name}_number"], summary[f"{name}_symmetry"]
+    kind = "" if symmetry == "whole" else f"{symmetry}, "
+    along = f"{number}" if isinstance(number, int) else f"{number:.4g} rad/m along the sliding"
+    speeds = (
+        of_key(f"{name}_angular_velocity_rad_per_s"),
+        of_key(f"{name}_speed_m_per_s"),
+    )
+    given = [f"{summary[q.header]:.4g} {q.si}" for q in speeds if summary.get(q.header) is not None]
+    part = 1 / summary[f"{name}_speed_factor"]
+    return f"{along}, {kind}from {given[0]}; this case: {part:.3g} times this speed"
 
 
 def _growing(summary: dict) -> str:

@@ -30,6 +30,8 @@ PICTURES = {
     "loads": "Tangential force over displacement, and dissipated energy over time.",
     "cycles": "Largest wear depth and worn volume over the cycles.",
     "mode": "Pressure perturbations: the fastest growing mode and the modes at critical speeds.",
+    "hot_spots": "Critical speeds by the number of hot spots, and growth of the first ones.",
+    "hot_spots_3d": "Temperature of the first hot spots on the best conductor, from both sides.",
 }
 """Pictures of a run with their captions, in the order of the report."""
 
@@ -45,6 +47,7 @@ _REPORT_TAG = re.compile(rb'<meta name="generator" content="thermowear"')
 _REPORT_HEAD = 1000  # bytes at the beginning of a report that contain its generator tag
 _OTHERS = {
     *("summary.json", "checkpoint.npz", "run.json", "case.resolved.toml", "fields.vtu"),
+    "hot_spots.vtu",
     *(FRAMES, "animation.gif", *(f"{name}.png" for name in PICTURES)),
 }
 

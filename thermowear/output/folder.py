@@ -24,6 +24,7 @@ from ..results.quantity import TABLES, table_of
 from .checkpoint import CHECKPOINT, write_checkpoint
 from .files import FRAMES, final_name, is_ours, name_at, write_text
 from .frames import remove_frames, write_fields, write_frame
+from .hot_spot_solid import HOT_SPOTS, write_hot_spots
 from .tables import RowWriter, write_points
 
 
@@ -154,6 +155,8 @@ class ResultsFolder:
                 write_points(self.path / name_at(stem, None), content)
         if result.fields is not None:
             write_fields(self.path / "fields.vtu", result.fields)
+        if result.hot_spots is not None and result.hot_spots.first is not None:
+            write_hot_spots(self.path / HOT_SPOTS, result.hot_spots.first)
         rounded = {name: round(value, 4) for name, value in seconds.items()}
         write_json(self.path / "summary.json", finite(result.summary) | {"seconds": rounded})
 

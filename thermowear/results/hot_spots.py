@@ -96,6 +96,8 @@ class HotSpotMode:
     mirror : tuple of (int, float) or None
         Coordinate that is constant on the mirror plane, and its value [m].
     speed_factor : float
+    conductor : int
+        Number of the best conductor, from 1, on which the mode hardly moves.
     blocks : tuple of HotSpotFields
         By type of the cells.
     """
@@ -105,4 +107,5 @@ class HotSpotMode:
     symmetry: int
     mirror: tuple[int, float] | None
     speed_factor: float
+    conductor: int
     blocks: tuple[HotSpotFields, ...]

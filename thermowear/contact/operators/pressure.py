@@ -53,6 +53,13 @@ class PressureSpace:
         """Coefficients of the L² projection of values at the points, by columns."""
         return np.linalg.solve(self.mass, self.weighted.T @ values)
 
+    def pressed(self, pressure: np.ndarray) -> np.ndarray:
+        """Mask (m,) of the coefficients that are positive under a pressure (n,)."""
+        if (pressure > 0.0).all():
+            return np.ones(self.basis.shape[1], dtype=bool)
+        coefficients = np.linalg.lstsq(dense(self.basis), pressure, rcond=None)[0]
+        return coefficients > _ZERO_PRESSURE * coefficients.max()
+
     @cached_property
     def mass(self) -> np.ndarray:
         """Matrix ``Ψᵀ w Ψ``, shape (m, m)."""

@@ -12,8 +12,9 @@ from ..mesh.tagged import TaggedMesh
 from .cells import Claim, MeshedBody, Sheet, between, both, grid, level, mesh_body, tagged_bodies
 from .divisions import SAME, graded_face, growing, growing_from_both, joined
 
-_LARGEST = 3.0
-"""Height of the largest row, in elements of equal size along the widest layer."""
+_LARGEST, _SLENDER = 3.0, 0.25
+"""Height of the largest row: in elements of equal size along the widest layer, and for layers that
+are much higher than wide in elements of equal size along the height."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,8 @@ def stacked_layers(
     for name, layer, span, (over, under) in _placed(layers):
         elements, grading = face(name)
         columns = _columns(layer, layers, elements, grading)
-        largest, thin = _LARGEST * widest / elements, row(float(np.diff(columns).min()))
+        largest = max(_LARGEST * widest, _SLENDER * layer.height) / elements
+        thin = row(float(np.diff(columns).min()))
         rows = _rows(span, (over is not None, under is not None), thin, largest, grading)
         bodies[name] = mesh_body([Sheet(grid(columns, rows))], 1)
         surfaces |= _surfaces(name, layer, span, over, under)

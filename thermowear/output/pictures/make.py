@@ -20,6 +20,7 @@ from ..files import contacts_of, name_at, picture, read_summary
 from ..tables import MissingColumnError
 from . import curves, maps, over_time
 from .animation import FPS, check_animation, has_frames
+from .hot_spots import draw_hot_spots
 from .modes import draw_modes
 
 _ALONG_A_LINE: dict[str, Callable[..., None]] = {
@@ -46,6 +47,7 @@ _OTHERS: dict[str, Callable[..., None]] = {
     "heat": over_time.draw_heat,
     "loads": over_time.draw_loads,
     "cycles": over_time.draw_cycles,
+    "hot_spots": draw_hot_spots,
 }
 _TIMEOUT = 180.0  # seconds for the rendering process
 _ANIMATION_TIMEOUT = 1800.0  # seconds for the rendering process of an animation
@@ -84,6 +86,8 @@ def make_pictures(folder: Path) -> list[str]:
     if not (folder / "fields.vtu").is_file():
         return [*notes, f"{folder}: no fields.vtu, so no pictures of the bodies"]
     reasons = {"the bodies": _render("bodies", str(folder.resolve()))}
+    if (folder / "hot_spots.vtu").is_file():
+        reasons["the hot spots"] = _render("hot_spot_views", str(folder.resolve()))
     if has_frames(folder):
         reasons["the animation"] = _animate(folder, folder / "animation.gif", FPS)
     return notes + [f"{what} could not be drawn: {why}" for what, why in reasons.items() if why]

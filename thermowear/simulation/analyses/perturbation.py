@@ -10,7 +10,6 @@ from functools import cached_property
 
 import numpy as np
 
-from ...contact.operators.condensation import CondensedContact
 from ...contact.operators.pressure import dense, scaled
 from ...errors import CaseError
 from ...laws.stability import (
@@ -29,7 +28,6 @@ from .growth_model import GrowthModel, PerturbationMode
 
 _REDUCED = 24
 """Number of perturbations most coupled to heat, the basis of growing ones; see `leading`."""
-_PRESSING = 1e-9
 _SLOW, _NEAR = 0.02, 0.3
 """Start of the onset search as part of a speed that is known roughly, or well."""
 _SAME, _ITERATIONS = 1e-4, 10
@@ -145,7 +143,7 @@ class PerturbedContact:
     def _space(self) -> LoadFree:
         """All load-free perturbations of the contact set."""
         contact = self._system.contact
-        pressed = touching(contact, self._pressure)
+        pressed = contact.pressed(self._pressure)
         space = load_free(contact.modes[pressed], contact.force_modes[pressed])
         identity = np.eye(len(pressed))[:, pressed]
         return LoadFree(identity @ space.pressures, identity @ space.gaps)
@@ -167,14 +165,6 @@ class PerturbedContact:
             slope = conditions.wear_slope(row, law, self._pressure)
             worn += spread.rate(slope[:, None] * pressed)
         return space.gaps.T @ (system.contact.weighted.T @ worn)
-
-
-def touching(contact: CondensedContact, pressure: np.ndarray) -> np.ndarray:
-    """Mask (m,) of the pressure coefficients that are positive under a pressure (n,)."""
-    if (pressure > 0).all():
-        return np.ones(contact.basis.shape[1], dtype=bool)
-    coefficients = np.linalg.lstsq(dense(contact.basis), pressure, rcond=None)[0]
-    return coefficients > _PRESSING * coefficients.max()
 
 
 def _secant(tried: list[tuple[float, float]]) -> float:

@@ -59,6 +59,7 @@ def mode_fields(model: WaveModel, waves: WaveSystem, mode: WaveMode) -> HotSpotM
         SIGNS[waves.symmetry],
         _mirror_plane(model),
         mode.factor,
+        model.reference + 1,
         blocks,
     )
 

@@ -95,14 +95,18 @@ def growth(
     factors = waves.factor * _SPEEDS
     if factors[0] < 1.0 < factors[-1]:
         factors = np.sort(np.append(factors, 1.0))
-    pairs = [(equations.without_wear, waves.without_wear), (equations, waves.with_wear)]
+    plain = equations.without_wear
+
+    def at(one: WaveEquations, mode: WaveMode | None, factor: float) -> WaveMode | None:
+        return None if mode is None else at_speed(one, mode, factor)
 
     def own() -> list:
-        mine = factors[comm.rank :: comm.size]
-        return [
-            (float(f), *(None if m is None else at_speed(e, m, float(f)) for e, m in pairs))
-            for f in mine
-        ]
+        found = []
+        for factor in map(float, factors[comm.rank :: comm.size]):
+            mode = at(plain, waves.without_wear, factor)
+            worn = at(equations, waves.with_wear, factor) if equations.worn else None
+            found.append((factor, mode, worn))
+        return found
 
     return sorted(sum(_of_ranks(comm, own), []), key=lambda row: row[0])
 

@@ -11,7 +11,6 @@ from ...bulk.waves import Wave, wave_along
 from ...contact.operators.pressure import dense
 from ...laws.stability import LoadFree, load_free
 from ...laws.waves import WaveEquations, WornBody
-from ..analyses.perturbation import touching
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from .body_speeds import body_speeds
@@ -127,7 +126,7 @@ class WaveModel:
     def _space(self, wave: Wave, elasticity: WaveElasticity) -> LoadFree:
         """Perturbations of the points in contact that carry no resultant."""
         contact, held = self.system.contact, elasticity.free
-        pressed = touching(contact, self.pressure)
+        pressed = contact.pressed(self.pressure)
         modes = [contact.modes, held] if wave.is_uniform else [held]
         forces = [contact.force_modes, held] if wave.is_uniform else [held]
         space = load_free(np.hstack(modes)[pressed], np.hstack(forces)[pressed])

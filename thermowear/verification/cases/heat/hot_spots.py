@@ -123,7 +123,7 @@ def layer(thickness: float, numbers: list[float], wear: float = 0.0) -> Result:
 
 @cache
 def _layer(thickness: float, numbers: tuple[float, ...], wear: float) -> Result:
-    depth, width = _DEEP / min(numbers), 0.2 * thickness
+    depth, width = _DEEP / min(numbers), 0.01 * thickness
     x = ["0 mm", f"{width!r} m"]
     tables: dict[str, Any] = {
         "title": "Hot spots on a layer between two half-planes",

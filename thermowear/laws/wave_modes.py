@@ -12,9 +12,9 @@ from .waves import WaveEquations
 _TOLERANCE, _ITERATIONS = 1e-11, 40
 _DIFFERENCE = 1e-5
 """Relative step of numerical derivatives of the logarithm of a gain."""
-_LARGEST_STEP = 0.7
-"""Largest change of the logarithm of a speed factor, and of a rate by its scale, in a step."""
-_ROUGH, _ROUNDS = 0.02, 40
+_LARGEST_STEPS = np.array([0.7, 10.0])
+"""Largest changes in a step: of the logarithm of a speed factor, of a frequency by its scale."""
+_ROUGH, _ROUNDS, _SLOW = 0.02, 40, 1e-4
 _RANGE, _PER_DECADE = (-3, 5), 3
 """Decades of the rates that are scanned, relative to that of diffusion over a wave length."""
 _BESIDE_OTHERS = (-1, 4), 2
@@ -57,7 +57,8 @@ def first_critical(equations: WaveEquations, guess: float = 1.0) -> WaveMode | N
     """
     plain, found = equations.without_wear, []
     for frame in equations.frames:
-        mode = _standing(plain, frame, guess)
+        starts = (_standing(plain, frame, guess * part) for part in (1.0, _SLOW))
+        mode = next((one for one in starts if one is not None), None)
         if mode is not None:
             found.append(mode)
     return min(found, key=lambda mode: mode.factor, default=None)
@@ -124,7 +125,7 @@ def growing(equations: WaveEquations, factor: float) -> int:
     """
     _, values = _sampled(equations, factor)
     turned = np.angle(values[1:] / values[:-1]).sum() + np.angle(values[0] / values[-1])
-    return int(round(-turned / (2 * np.pi)))
+    return round(float(-turned / (2 * np.pi)))
 
 
 def _sampled(equations: WaveEquations, factor: float) -> tuple[np.ndarray, np.ndarray]:
@@ -171,7 +172,7 @@ def _standing(equations: WaveEquations, frame: float, factor: float) -> WaveMode
         gain, shape = equations.gains(factor, -1j * factor * frame).largest
         if gain.real <= 0.0:
             return None
-        change = float(np.clip(1.0 / gain.real, 1e-2, 1e2))
+        change = float(np.clip(1.0 / gain.real, 1e-3, 1e3))
         factor *= change
         if abs(change - 1.0) < _ROUGH:
             break
@@ -243,7 +244,7 @@ def _newton(
         if not np.isfinite(slopes).all() or abs(np.linalg.det(slopes)) < 1e-300:
             return None
         step = -np.linalg.solve(slopes, value)
-        step *= min(1.0, _LARGEST_STEP / np.abs(step).max())
+        step *= min(1.0, (_LARGEST_STEPS / np.maximum(np.abs(step), 1e-300)).min())
         x = x + step
         following, shape = residual(x, shape)
         if not np.isfinite(following).all():

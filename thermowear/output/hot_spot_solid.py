@@ -105,5 +105,3 @@ def _in_space(fields: HotSpotFields, mode: HotSpotMode):
     far = ((np.arange(steps) + 1) % layers)[:, None, None] * size + corners
     hexahedra = np.concatenate([near, far], axis=2).reshape(-1, 2 * corners.shape[1])
     return points.reshape(-1, 3), rise.ravel(), moved.reshape(-1, 3), hexahedra
-
-

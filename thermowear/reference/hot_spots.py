@@ -196,9 +196,7 @@ class LayerBetweenHalfPlanes:
             return None
         return exp(found.x[0]), float(found.x[1] * scale)
 
-    def _layer(
-        self, m: float, symmetric: bool, rate: complex
-    ) -> tuple[complex, float, complex]:
+    def _layer(self, m: float, symmetric: bool, rate: complex) -> tuple[complex, float, complex]:
         """Rise of a face per temperature, flattening per pressure, and heat per temperature."""
         own, a = self.layer, self.thickness / 2
         if abs(rate) < _REMOVABLE * own.diffusivity * m**2:

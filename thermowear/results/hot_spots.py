@@ -12,8 +12,8 @@ from .quantity import as_in, column, table
 @table(
     "hot_spots",
     "Hot spots, one row per number and symmetry",
-    "stability with `hot_spots`: one row per number of hot spots and symmetry of the mode, with its "
-    "critical speed, without and with wear",
+    "stability with `hot_spots`: one row per number of hot spots and symmetry of the mode, with "
+    "its critical speed, without and with wear",
     grows=True,
 )
 class HotSpotRow:

@@ -142,7 +142,7 @@ class ScriptedModel:
         return self._solved(StaticAnalysis("steady"), observer)
 
     def stability(self, observer: Observer | None = None, **settings: Any) -> ModelSolution:
-        """Thermoelastic stability; settings are attributes of `model.analyses.StabilityAnalysis`."""
+        """Thermoelastic stability; settings as of `model.analyses.StabilityAnalysis`."""
         return self._solved(StabilityAnalysis(**settings), observer)
 
     def transient(

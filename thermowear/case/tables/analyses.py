@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from ..values import units
 from ..values.section import KeyFault, Number, Section, number_or
@@ -102,9 +102,16 @@ class Reciprocating(Timed):
         return self
 
 
-MOST_HOT_SPOTS = 200
+MOST_HOT_SPOTS = 1000
 """Largest number of hot spots round an axis."""
 HotSpotNumber = Annotated[int, Field(ge=0, le=MOST_HOT_SPOTS, strict=True)]
+
+
+def _up_to(given: Any) -> Any:
+    """Numbers from zero to a given one; anything else as it is."""
+    if isinstance(given, int) and not isinstance(given, bool) and 0 <= given <= MOST_HOT_SPOTS:
+        return tuple(range(given + 1))
+    return given
 
 
 def _each_once(numbers: tuple[float, ...]) -> tuple[float, ...]:
@@ -120,8 +127,9 @@ class Stability(OneWay):
 
     Attributes
     ----------
-    hot_spots : int, or tuple of int
-        Numbers of hot spots round the axis to search: 0 to a largest number, or those of a list.
+    hot_spots : tuple of int
+        Numbers of hot spots round the axis to search; in the file also the largest one alone, for
+        all up to it.
     wave_lengths : tuple of float
         Wave lengths along the sliding, of a section that it is normal to [m].
     mirror : str, or tuple of str, or None
@@ -129,24 +137,19 @@ class Stability(OneWay):
     """
 
     type: Literal["stability"]
-    hot_spots: HotSpotNumber | Annotated[tuple[HotSpotNumber, ...], AfterValidator(_each_once)] = ()
+    hot_spots: Annotated[
+        tuple[HotSpotNumber, ...], BeforeValidator(_up_to), AfterValidator(_each_once)
+    ] = ()
     wave_lengths: Annotated[tuple[units.Length, ...], AfterValidator(_each_once)] = ()
     mirror: str | tuple[str, ...] | None = None
 
     @model_validator(mode="after")
     def _of_one_kind(self):
-        if self.numbers and self.wave_lengths:
+        if self.hot_spots and self.wave_lengths:
             raise KeyFault("wave_lengths", "only one of hot_spots and wave_lengths can be given")
-        if self.mirror is not None and not (self.numbers or self.wave_lengths):
+        if self.mirror is not None and not (self.hot_spots or self.wave_lengths):
             raise KeyFault("mirror", "needs hot_spots or wave_lengths")
         return self
-
-    @property
-    def numbers(self) -> tuple[int, ...]:
-        """Numbers of hot spots to search."""
-        if isinstance(self.hot_spots, int):
-            return tuple(range(self.hot_spots + 1))
-        return self.hot_spots
 
     @property
     def mirrors(self) -> tuple[str, ...] | None:

@@ -39,8 +39,8 @@ def draw_views(folder: Path) -> None:
                     cmap=_COLORS,
                     clim=(-limit, limit),
                     show_scalar_bar=False,
-                    ambient=0.5,
-                    diffuse=0.5,
+                    ambient=0.8,
+                    diffuse=0.2,
                 )
             axis.imshow(cropped(picture[0]))
             axis.set_axis_off()

@@ -25,9 +25,10 @@ def draw_hot_spots(folder: Path) -> None:
     modes = tables.read(folder / "hot_spots.csv")
     path = folder / "growth.csv"
     growth = tables.read(path) if path.is_file() else None
-    with column(
-        folder / "hot_spots.png", 1 if growth is None else 2, 3.2, sharex=False
-    ) as (upper, *lower):
+    with column(folder / "hot_spots.png", 1 if growth is None else 2, 3.2, sharex=False) as (
+        upper,
+        *lower,
+    ):
         _draw_critical(upper, modes)
         for axis in lower:
             assert growth is not None
@@ -55,6 +56,7 @@ def _draw_critical(axis: Axes, modes: tables.TableColumns) -> None:
     highest = np.nanmax(modes["speed_factor"], initial=0.0)
     if np.isfinite(lowest):
         axis.set_ylim(0.0, 1.08 * max(min(highest, _SHOWN * lowest), 1.0))
+    axis.margins(x=0.03)
     axis.axhline(1.0, color="0.5", linewidth=0.8)
     axis.text(
         *(0.995, 1.0, "speed of the case"),

@@ -39,7 +39,7 @@ def analysis_of(case: AnyCase) -> Analysis:
     if isinstance(given, tables.Stability):
         mirror = case.geometry.mirror if given.mirrors is None else given.mirrors
         return StabilityAnalysis(
-            hot_spots=given.numbers, wave_lengths=given.wave_lengths, mirror=mirror
+            hot_spots=given.hot_spots, wave_lengths=given.wave_lengths, mirror=mirror
         )
     if not isinstance(given, tables.Reciprocating):
         return StaticAnalysis(given.type)

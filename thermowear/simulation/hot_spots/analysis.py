@@ -17,6 +17,7 @@ from ..runtime.observer import Observer
 from ..system.building import build
 from ..system.system import System
 from .mode_fields import SIGNS, mode_fields
+from .requirements import require_waves
 from .search import CriticalWaves, growth, refined, search
 from .supports import Symmetry
 from .wave_model import WaveModel
@@ -70,44 +71,6 @@ def hot_spots(
     return extra, HotSpots(rows, curve, mode_fields(model, waves, first.without_wear))
 
 
-def require_waves(system: System, analysis: StabilityAnalysis) -> None:
-    """Reject models without waves along the sliding.
-
-    Raises
-    ------
-    CaseError
-    """
-    model = system.model
-    ring = model.kinematics == "axisymmetric"
-    if ring != bool(analysis.hot_spots):
-        wanted = "an axisymmetric model" if analysis.hot_spots else "a plane-strain model"
-        key = "hot_spots" if analysis.hot_spots else "wave_lengths"
-        raise CaseError(f"analysis.{key}: needs {wanted}; found model = {model.kinematics!r}")
-    if model.kinematics not in ("axisymmetric", "plane-strain"):
-        raise CaseError(
-            f"analysis.wave_lengths: found model = {model.kinematics!r}; waves along the sliding "
-            "need a plane-strain section"
-        )
-    if not ring and any(not (i.motion.at_rest or i.motion.across) for i in model.interfaces):
-        raise CaseError(
-            "analysis.wave_lengths: a body slides within the section; waves along the sliding need "
-            "a section normal to it (across = true)"
-        )
-    if system.thermal is None or system.thermal.conduction.capacity is None:
-        raise ComputationError(
-            "hot spots move on at least one body; they need density and specific_heat of all bodies"
-        )
-    unknown = set(analysis.mirror) - set(system.bodies.each[0].surfaces)
-    if unknown:
-        raise CaseError(f"analysis.mirror: found {sorted(unknown)[0]!r}; it is no surface")
-    guided = {*model.symmetry, *(s for b in model.bodies for s in b.rollers)}
-    if set(analysis.mirror) - guided:
-        raise CaseError(
-            f"analysis.mirror: {sorted(set(analysis.mirror) - guided)[0]} is no plane of symmetry; "
-            "its normal displacement must vanish (symmetry or rollers)"
-        )
-
-
 def _wave_model(end: Snapshot, analysis: StabilityAnalysis) -> WaveModel:
     return WaveModel(end.system, end.contact.pressure, end.contact.conditions, analysis.mirror)
 
@@ -153,13 +116,18 @@ def _summary(model: WaveModel, found: list[CriticalWaves], name: str) -> dict[st
         assert mode is not None
         m = model.wave_number(first.number)
         entries |= {
-            f"first_{name}{which}_number": first.number if model.radius is None else int(first.number),
+            f"first_{name}{which}_number": _number(model, first),
             f"first_{name}{which}_symmetry": first.symmetry,
             f"first_{name}{which}_speed_factor": mode.factor,
             f"first_{name}{which}_drift_m_per_s": -mode.rate.imag / m if m else 0.0,
             **_speeds(model.system.model, f"first_{name}{which}", mode.factor),
         }
     return entries
+
+
+def _number(model: WaveModel, waves: CriticalWaves) -> float:
+    """Number of hot spots round the axis, or wave number along a prism [1/m]."""
+    return waves.number if model.radius is None else int(waves.number)
 
 
 def _speeds(model: Model, name: str, factor: float) -> dict[str, float]:

@@ -57,4 +57,6 @@ def _relative(interface, radii: np.ndarray, weights: np.ndarray) -> float:
     if motion.angular_velocity is not None:
         return motion.angular_velocity
     assert motion.velocity is not None
-    return motion.velocity if motion.across else motion.velocity / np.average(radii, weights=weights)
+    if motion.across:
+        return motion.velocity
+    return motion.velocity / float(np.average(radii, weights=weights))

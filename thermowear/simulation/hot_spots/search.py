@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import TypeVar
 
 import numpy as np
@@ -108,7 +109,7 @@ def growth(
             found.append((factor, mode, worn))
         return found
 
-    return sorted(sum(_of_ranks(comm, own), []), key=lambda row: row[0])
+    return sorted(chain.from_iterable(_of_ranks(comm, own)), key=lambda row: row[0])
 
 
 def refined(model: WaveModel, waves: CriticalWaves) -> float | None:

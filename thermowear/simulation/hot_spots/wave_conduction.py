@@ -70,7 +70,8 @@ def wave_conduction(
         Surfaces in the mirror plane, at ambient temperature in antisymmetric modes.
     """
     thermal, comm = system.thermal, system.comm
-    assert thermal is not None and thermal.conduction.capacity is not None
+    assert thermal is not None
+    assert thermal.conduction.capacity is not None
     conduction, face, weights = thermal.conduction, thermal.face, system.weights
     matrix = gathered(conduction.conductivity)
     if not wave.is_uniform:
@@ -86,16 +87,14 @@ def wave_conduction(
     jump, resisted = _joints(conduction, comm)
     border = sp.hstack([jump, between @ sp.diags(weights) @ crossing], format="csr")
     across = sp.block_diag([resisted, basis.T @ sp.diags(weights * resistance) @ basis])
-    n, extra = matrix.shape[0], border.shape[1]
+    extra = border.shape[1]
     f = face.partition * np.ones(len(weights))
     share = first @ sp.diags(weights * f) + second @ sp.diags(weights * (1 - f))
     friction = share @ sp.csr_matrix(sp.diags(base.heating) @ sp.csr_matrix(system.basis))
     fixed = gathered_rows(_fixed(system, thermal, wave, symmetry, mirror), comm)
     return WaveConduction(
         sp.bmat([[matrix, border], [border.T, -across]], format="csc"),
-        sp.block_diag(
-            [gathered(conduction.capacity), sp.csr_matrix((extra, extra))], format="csr"
-        ),
+        sp.block_diag([gathered(conduction.capacity), sp.csr_matrix((extra, extra))], format="csr"),
         sp.vstack([friction, sp.csr_matrix((extra, friction.shape[1]))], format="csr"),
         np.concatenate([_body_of_rows(conduction, comm), np.zeros(extra, dtype=int)]),
         np.concatenate([~fixed, np.ones(extra, dtype=bool)]),

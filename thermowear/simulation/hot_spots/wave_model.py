@@ -141,9 +141,7 @@ class WaveModel:
         for row, ((side, law), spread) in enumerate(laws):
             slope = self.conditions.wear_slope(row, law, self.pressure)
             worn = spread.rate(slope[:, None] * pressed)
-            for (_, points), bodies in zip(
-                system.contacts, system.contacts.bodies, strict=True
-            ):
+            for (_, points), bodies in zip(system.contacts, system.contacts.bodies, strict=True):
                 own = np.zeros_like(worn)
                 own[points] = worn[points]
                 rate = space.gaps.T @ (system.contact.weighted.T @ own)
@@ -173,4 +171,3 @@ class WaveModel:
 
 def _largest(body, name: str) -> float:
     return max(getattr(material, name) or 0.0 for material in body.materials.values())
-

@@ -95,7 +95,8 @@ def build(
     coupled = coupled_without_condensation(choice, len(contacts.weights))
     made_from = made_from.solved_by(choice.name, coupled)
     with phases("assemble elasticity"):
-        glued = parts.get("glued", made_from.mesh, lambda: glued_pairings(model, comm, kinematics, bodies))
+        at = model, comm, kinematics, bodies
+        glued = parts.get("glued", made_from.mesh, lambda: glued_pairings(*at))
         elastic, trace = parts.get(
             "elasticity",
             made_from.elasticity,
@@ -203,9 +204,7 @@ def _paired_faces(
     return worn_contact_points(model, interface, kinematics, *moved, *faces)
 
 
-def glued_pairings(
-    model: Model, comm, kinematics: Kinematics, bodies: Bodies
-) -> list[Pairing]:
+def glued_pairings(model: Model, comm, kinematics: Kinematics, bodies: Bodies) -> list[Pairing]:
     """Opposite points of the glued faces."""
     degree = model.discretisation.degree
     return [

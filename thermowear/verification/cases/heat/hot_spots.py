@@ -35,8 +35,9 @@ def tei_layer_antisymmetric() -> Iterator[Check]:
     for m in _GIVEN:
         mode = critical(THICKNESS, [m])["antisymmetric"][0]
         speed, drift = exact.critical(m, False)
-        yield _compared(f"antisymmetric, wave number {m:g} /m, critical speed [m/s]", mode[0], speed)
-        yield _compared(f"antisymmetric, wave number {m:g} /m, drift [m/s]", mode[1], drift)
+        where = f"antisymmetric, wave number {m:g} /m"
+        yield _compared(f"{where}, critical speed [m/s]", mode[0], speed)
+        yield _compared(f"{where}, drift [m/s]", mode[1], drift)
     yield from _first(THICKNESS, False)
     yield from _similar()
     yield from _worn()

@@ -8,8 +8,8 @@ from scipy.integrate import quad
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import kinematics_of
-from thermowear.case.tables.geometry import Pressing
 from thermowear.case.tables.schema import MeshTable
+from thermowear.case.values.pressing import Pressing
 from thermowear.contact.faces.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ _ROUGH, _ROUNDS, _SLOW = 0.02, 40, 1e-4
 _RANGE, _PER_DECADE = (-3, 5), 3
 """Decades of the rates that are scanned, relative to that of diffusion over a wave length."""
 _BESIDE_OTHERS = (-1, 4), 2
-"""The same of rates in the frames of the other bodies."""
+"""Rates in the frames of the other bodies, likewise."""
 _TURN = 1.0
 """Largest change of the phase of the determinant between neighbouring samples [rad]."""
 _BESIDE = 0.98
@@ -55,13 +55,13 @@ def first_critical(equations: WaveEquations, guess: float = 1.0) -> WaveMode | N
     guess : float
         Speed factor near it, if known.
     """
-    plain, found = equations.without_wear, []
+    plain, found = equations.without_wear, list[WaveMode]()
     for frame in equations.frames:
         starts = (_standing(plain, frame, guess * part) for part in (1.0, _SLOW))
         mode = next((one for one in starts if one is not None), None)
         if mode is not None:
             found.append(mode)
-    return min(found, key=lambda mode: mode.factor, default=None)
+    return _slowest(found)
 
 
 def lowest(equations: WaveEquations, mode: WaveMode) -> WaveMode:
@@ -110,11 +110,20 @@ def at_speed(equations: WaveEquations, mode: WaveMode, factor: float) -> WaveMod
     """Mode at another speed that develops from a given one, with its growth rate."""
     steps = max(1, int(np.ceil(abs(np.log(factor / mode.factor)) / 0.1)))
     for part in np.geomspace(mode.factor, factor, steps + 1)[1:]:
-        following = _grown(equations, mode, float(part))
+        following = _grown(equations, mode, float(part)) or _parted(equations, mode, float(part))
         if following is None:
             return None
         mode = following
     return mode
+
+
+def _parted(equations: WaveEquations, mode: WaveMode, factor: float) -> WaveMode | None:
+    """Fastest of the modes near one that two modes meet at, stationary and swinging ones."""
+    size = max(abs(mode.rate), equations.slowest)
+    starts = [mode.rate + part * size for part in (0.3j, -0.3j, 0.3, -0.3, 1j, -1j)]
+    found = [_grown(equations, replace(mode, rate=rate), factor) for rate in starts]
+    grown = [one for one in found if one is not None]
+    return max(grown, key=lambda one: one.rate.real) if grown else None
 
 
 def growing(equations: WaveEquations, factor: float) -> int:
@@ -130,12 +139,12 @@ def growing(equations: WaveEquations, factor: float) -> int:
 
 def _sampled(equations: WaveEquations, factor: float) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies [rad/s], ascending, and determinants, dense where the phase changes quickly."""
-    points = []
+    parts = []
     for frame in equations.frames:
         (low, high), density = (_RANGE, _PER_DECADE) if frame == 0.0 else _BESIDE_OTHERS
         sizes = equations.slowest * np.logspace(low, high, (high - low) * density + 1)
-        points += [-factor * frame - sizes, -factor * frame + sizes]
-    points = np.unique(np.concatenate(points))
+        parts += [-factor * frame - sizes, -factor * frame + sizes]
+    points = np.unique(np.concatenate(parts))
 
     def values_at(frequencies):
         return [equations.determinant(factor, 1j * float(f)) for f in frequencies]
@@ -189,7 +198,12 @@ def _departing(equations: WaveEquations, mode: WaveMode) -> WaveMode | None:
                 one = _critical(equations, WaveMode(mode.factor, rate, mode.shape))
                 if one is not None and one.factor > 0.5 * mode.factor:
                     found.append(one)
-    return min(found, key=lambda one: one.factor, default=None)
+    return _slowest(found)
+
+
+def _slowest(modes: Sequence[WaveMode]) -> WaveMode | None:
+    """Mode of the lowest speed; None of none."""
+    return min(modes, key=lambda mode: mode.factor) if modes else None
 
 
 def _critical(equations: WaveEquations, start: WaveMode) -> WaveMode | None:

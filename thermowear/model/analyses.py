@@ -49,7 +49,8 @@ class StabilityAnalysis(StaticAnalysis):
     @property
     def waves(self) -> tuple[float, ...]:
         """Numbers round the axis, or wave numbers along the sliding [1/m]."""
-        return self.hot_spots or tuple(2 * math.pi / length for length in self.wave_lengths)
+        numbers = tuple(map(float, self.hot_spots))
+        return numbers or tuple(2 * math.pi / length for length in self.wave_lengths)
 
 
 @dataclass(frozen=True)

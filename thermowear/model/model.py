@@ -193,6 +193,15 @@ class Model:
         return self.interface.motion
 
     @property
+    def supports(self) -> tuple[tuple[str, ...], ...]:
+        """Clamped surfaces, then those that fix the first, the second and the third component."""
+        clamped, rollers, mid_plane = (
+            tuple(surface for body in self.bodies for surface in getattr(body, kind))
+            for kind in ("fixed", "rollers", "mid_plane")
+        )
+        return clamped, self.symmetry, rollers, mid_plane
+
+    @property
     def coated(self) -> bool:
         """True if a face has layers."""
         return any(interface.coated for interface in self.interfaces)

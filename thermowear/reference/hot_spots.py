@@ -111,7 +111,7 @@ class LayerBetweenHalfPlanes:
         λ = cmath.sqrt(m**2 + in_pads / pads.diffusivity)
         temperature = self.friction * speed / (into + pads.conductivity * λ)
         raised += 2 * pads.expansion * (1 + pads.poisson_ratio) / (λ + m)
-        worn = 0.0
+        worn = 0j
         for wear, own in ((self.wear_layer, rate), (self.wear_pads, in_pads)):
             worn += wear * speed / own if wear else 0.0
         return temperature * raised - flattened - pads.softness(m) - worn
@@ -139,7 +139,7 @@ class LayerBetweenHalfPlanes:
         return best[0], -best[1] / m
 
     def first(self, symmetric: bool) -> tuple[float, float, float]:
-        """Lowest critical speed [m/s], its wave number [1/m] and the velocity on the layer [m/s]."""
+        """Lowest critical speed [m/s], its wave number [1/m], and velocity on the layer [m/s]."""
         a = self.thickness / 2
         numbers = np.geomspace(0.05, 20.0, _STEPS) / a
         speeds = [self.critical(float(m), symmetric)[0] for m in numbers]

@@ -40,7 +40,7 @@ from .solution import ModelSolution
 from .user_mesh import UserMeshes, user_meshes
 
 SOLVERS = get_args(Solver)
-_OF_SECTIONS = ("axisymmetric", "plane-strain", "plane-stress")
+_OF_SECTIONS = "axisymmetric", "plane-strain", "plane-stress"
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +142,7 @@ class ScriptedModel:
         return self._solved(StaticAnalysis("steady"), observer)
 
     def stability(self, observer: Observer | None = None, **settings: Any) -> ModelSolution:
-        """Thermoelastic stability; settings as of `model.analyses.StabilityAnalysis`."""
+        """Stability; settings are attributes of `model.analyses.StabilityAnalysis`."""
         return self._solved(StabilityAnalysis(**settings), observer)
 
     def transient(

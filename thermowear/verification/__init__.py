@@ -20,6 +20,7 @@ from .cases.cycles.reciprocating_in_space import reciprocating_3d
 from .cases.cycles.spheres import fretting_sphere, mindlin_sphere
 from .cases.heat.blocks import pressure_conductance, temperature_dependent, two_slabs
 from .cases.heat.growth import tei_growth
+from .cases.heat.hot_spots import tei_layer_antisymmetric, tei_layer_symmetric, tei_ring
 from .cases.heat.instability import half_plane_instability, sliding_rod
 from .cases.heat.moving_band import moving_band
 from .cases.heat.transient_heat import braking_stop, step_flux
@@ -47,7 +48,8 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     mindlin_sphere, fretting_sphere,
     reciprocating, reciprocating_3d, moving_band, two_slabs, pressure_conductance,
     temperature_dependent, minimality, step_flux, braking_stop, sliding_rod,
-    half_plane_instability, tei_growth, optimal_shape,
+    half_plane_instability, tei_layer_antisymmetric, tei_layer_symmetric, tei_ring,
+    tei_growth, optimal_shape,
     ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face, coating, coated_bush,
     glued_blocks, pad_disk_pad, clutch_pack, face_seal, two_shoes, floating_caliper,
     layer_instability, cad_part,

@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 from abc import abstractmethod
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, ClassVar, get_args
 
 from pydantic import model_validator
 from pydantic.fields import FieldInfo
 
+from ..values.pressing import Pressing
 from ..values.section import KeyFault, Section, UserFile
 from ..values.units import Length
 
@@ -22,25 +22,6 @@ KNOWN: dict[str, type[Geometry]] = {}
 
 _APART = 1e7
 """Largest ratio of two lengths of a geometry: coordinates have 16 digits, meshes few layers."""
-
-
-@dataclass(frozen=True)
-class Pressing:
-    """Normal load and contact modulus, for estimates of the contact zone.
-
-    Attributes
-    ----------
-    force : float or None
-        Normal force [N]; None if the approach is given.
-    approach : float or None
-        Approach [m]; None if the force is given.
-    modulus : float
-        Contact modulus E*, ``1/E* = Σ (1 - ν²)/E`` [Pa].
-    """
-
-    force: float | None
-    approach: float | None
-    modulus: float
 
 
 def keyed(value: Callable[[Any], Any]) -> Any:
@@ -81,7 +62,7 @@ class Geometry(Section):
     sized : bool
         True if the mesh has the sizes ``mesh.size`` and ``mesh.contact_size``.
     has_skin : bool
-        True if the mesh has rows along the contact faces, the first as high as ``mesh.skin``.
+        True if the mesh has rows along the contact faces, see ``mesh.skin``.
     symmetry, rollers, mid_plane : tuple of str
         Surfaces that cannot move along x, y or z, but freely in their planes.
     mirror : tuple of str

@@ -12,12 +12,12 @@ from pydantic import Field, model_validator
 from ...errors import CaseError
 from ...laws.time_course import LoadHistories
 from ..values.percentages import Percentage
+from ..values.pressing import Pressing
 from ..values.section import Number, Section
 from ..values.units import Length
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
 from .contact import ContactTable, InterfaceTable
-from .geometry import Pressing
 from .geometry_choice import AnyGeometry
 from .materials import BodyTable, Properties, cell_sets, located_material, part_named
 from .tabulated import TimeHistory

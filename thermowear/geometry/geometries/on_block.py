@@ -12,8 +12,9 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from ...case.tables.geometry import Geometry, Pressing, keyed, named
+from ...case.tables.geometry import Geometry, keyed, named
 from ...case.tables.plane_geometry import HalvableGeometry
+from ...case.values.pressing import Pressing
 from ...case.values.units import Length
 from ...errors import CaseError
 from ..meshing.cells import (

@@ -14,7 +14,8 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
-from ...case.tables.geometry import Geometry, Pressing, keyed, named
+from ...case.tables.geometry import Geometry, keyed, named
+from ...case.values.pressing import Pressing
 from ...case.values.section import KeyFault
 from ...case.values.units import Length
 from ...errors import CaseError

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 from pydantic import model_validator
 
-from ...case.tables.geometry import Pressing
+from ...case.values.pressing import Pressing
 from ...case.values.section import KeyFault
 from ...case.values.units import Length, Radius
 from ..meshing.cells import ORDER, Sheet, grid, level, mesh_body, ruled

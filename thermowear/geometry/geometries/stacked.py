@@ -82,8 +82,8 @@ class Stacked(Geometry):
     def build(self, mesh, zone=None) -> TaggedMesh:
         (first, upper), (second, lower) = zip(self.bodies, (self.upper, self.lower), strict=True)
         ends = {
-            first: self._upper(zone, *mesh.face(first), mesh.row),
-            second: self._lower(zone, *mesh.face(second), mesh.row),
+            first: self._upper(zone, mesh.row, *mesh.face(first)),
+            second: self._lower(zone, mesh.row, *mesh.face(second)),
         }
         at_face = level(1, 0.0)
         claims = [at_face, level(1, upper.height), level(0, upper.left), level(0, upper.right)]
@@ -95,7 +95,7 @@ class Stacked(Geometry):
         )
 
     def _upper(
-        self, zone, elements: int, grading: float, row: FirstRow
+        self, zone, row: FirstRow, elements: int, grading: float
     ) -> tuple[np.ndarray, np.ndarray]:
         """Columns and rows of body 1."""
         columns = self._face(elements, grading, zone)
@@ -104,7 +104,7 @@ class Stacked(Geometry):
         return columns, rows
 
     def _lower(
-        self, zone, elements: int, grading: float, row: FirstRow
+        self, zone, row: FirstRow, elements: int, grading: float
     ) -> tuple[np.ndarray, np.ndarray]:
         """Columns and rows of body 2."""
         face = self._lower_face(elements, grading, zone)

@@ -26,7 +26,6 @@ from ...parallel import sum_over_ranks
 from ..heat.friction_heat import TemperatureField
 from ..interface.body_state import BodyState
 from ..interface.equilibrium import ContactState
-from ..system.building import supports
 from ..system.rigid_modes import fluid_pressure, surface_loads
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem, conducting_parts, cooling
@@ -55,7 +54,7 @@ class EnrichedBodies:
         elastic, degree = system.elastic, system.model.discretisation.degree
         bodies = elastic.bodies
         surplus = surplus_spaces(bodies, degree, bodies.dim)
-        clamped, *guided = supports(system.model)
+        clamped, *guided = system.model.supports
         clamped = (*clamped, *elastic.joints.surfaces)  # the details at a joint are not resolved
         held = [
             fixed_values(body, elastic.kinematics, space, clamped, guided)

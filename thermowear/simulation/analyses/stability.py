@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import ComputationError
 from ...laws.stability import Rate
-from ...model.analyses import StabilityAnalysis
+from ...model.analyses import StabilityAnalysis, StaticAnalysis
 from ...results import Modes, Result
 from ..hot_spots.analysis import hot_spots
 from ..interface.condensed_method import CondensedMethod
@@ -27,7 +27,7 @@ _SHOWN = 4
 
 
 def stability(
-    system: System, analysis: StabilityAnalysis, observer: Observer
+    system: System, analysis: StaticAnalysis, observer: Observer
 ) -> tuple[Snapshot, Result]:
     """Thermoelastic stability of the steady state, or of the cold unworn contact if there is none.
 
@@ -58,7 +58,7 @@ def stability(
             extra, modes = _keys(system, static[0] if static else None, None, None, None), []
     extra["static_speed_factors"] = [mode.factor for mode in static]
     found = replace(unperturbed, modes=_table(system, modes + static))
-    if analysis.waves:
+    if isinstance(analysis, StabilityAnalysis) and analysis.waves:
         with system.phases("hot spots"):
             more, spots = hot_spots(end, analysis, observer, base_state)
         extra, found = extra | more, replace(found, hot_spots=spots)

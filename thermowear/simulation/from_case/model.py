@@ -10,7 +10,7 @@ import numpy as np
 
 from ...case.tables.analyses import Fretting
 from ...case.tables.conditions import AxisTable
-from ...case.tables.geometry import Geometry, Pressing
+from ...case.tables.geometry import Geometry
 from ...case.tables.laws import PressureConductanceTable, TabulatedConductanceTable, law_of
 from ...case.tables.materials import Properties
 from ...case.tables.schema import Case, MeshTable
@@ -21,6 +21,7 @@ from ...case.tables.tabulated import (
     TemperatureTable,
 )
 from ...case.tables.wear import BodyWearTable
+from ...case.values.pressing import Pressing
 from ...case.values.section import Section
 from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh

@@ -156,14 +156,14 @@ def _error_estimate(
     try:
         other = build(replace(system.model, discretisation=finer), system.comm, system.phases)
         factor = refined(_wave_model(base(other, observer)[0], analysis), first)
-    except (CaseError, ComputationError) as error:
-        return {"error_estimate_missing": {"first_hot_spots": str(error)}}
+    except (CaseError, ComputationError) as reason:
+        return {"error_estimate_missing": {"first_hot_spots": str(reason)}}
     if factor is None:
         return {"error_estimate_missing": {"first_hot_spots": "no mode on finer elements"}}
     error = abs(factor / first.factor - 1.0)
     if error > _COARSE:
         observer.note(
-            f"the critical speed of hot spots is uncertain by about {100 * error:.2g} %; refine the "
-            "mesh: more elements, a higher degree, or thinner rows at the contact (mesh.skin)"
+            f"the critical speed of hot spots is uncertain by about {100 * error:.2g} %; refine "
+            "the mesh: more elements, a higher degree, or thinner rows at the contact (mesh.skin)"
         )
     return {"first_hot_spots_error_estimate_relative": error}

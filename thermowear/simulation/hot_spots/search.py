@@ -70,7 +70,8 @@ def search(
         ) -> CriticalWaves | None:
             if comm.rank >= len(batch):
                 return None
-            return CriticalWaves(*batch[comm.rank], *_critical(equations[comm.rank], guess))
+            number, symmetry = batch[comm.rank]
+            return CriticalWaves(number, symmetry, *_critical(equations[comm.rank], guess))
 
         found += [one for one in _of_ranks(comm, own) if one is not None]
     return found

@@ -9,11 +9,10 @@ import scipy.sparse as sp
 import ufl
 
 from ...bulk.compiled import assembled_matrix
-from ...bulk.gathered import gathered, gathered_rows
 from ...bulk.heat.conduction import Conduction
 from ...bulk.joints.conditions import conditions
 from ...bulk.kinematics import section_measure
-from ...bulk.spaces import block_diagonal
+from ...bulk.spaces import block_diagonal, gathered, gathered_rows
 from ...bulk.waves import Wave
 from ..system.conditions import InterfaceConditions
 from ..system.system import System

@@ -7,16 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 
-from ...bulk.gathered import gathered, gathered_rows
 from ...bulk.mechanics.elasticity import Elasticity, elasticity
-from ...bulk.spaces import block_diagonal
+from ...bulk.spaces import block_diagonal, gathered, gathered_rows
 from ...bulk.waves import Wave
 from ...contact.operators.pressure import dense, scaled
 from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import Pairing
 from ...contact.ties.joints import elastic_joints
 from ...parallel import sum_over_ranks
-from ..system.building import elastic_materials, glued_pairings, supports
+from ..system.building import elastic_materials, glued_pairings
 from ..system.system import System
 from .supports import FreeMotions, Guided, Symmetry, antisymmetric, pinning
 
@@ -86,7 +85,7 @@ def _assembled(
 ) -> Elasticity:
     """Elastic bodies with the supports of the parity of the mode."""
     model, glued = system.model, _glued(system)
-    clamped, *guided = supports(model)
+    clamped, *guided = model.supports
     held: Guided = (guided[0], guided[1], guided[2])
     if symmetry == "antisymmetric":
         held = antisymmetric(held, mirror)

@@ -135,7 +135,7 @@ class WaveModel:
 
     def _worn(self, space: LoadFree, turning: np.ndarray) -> tuple[WornBody, ...]:
         """Wear of the faces by body."""
-        system, found = self.system, {}
+        system, found = self.system, dict[int, np.ndarray]()
         pressed = dense(system.basis) @ space.pressures
         laws = zip(system.laws.items(), system.spreads.values(), strict=True)
         for row, ((side, law), spread) in enumerate(laws):
@@ -145,7 +145,7 @@ class WaveModel:
                 own = np.zeros_like(worn)
                 own[points] = worn[points]
                 rate = space.gaps.T @ (system.contact.weighted.T @ own)
-                found[bodies[side]] = found.get(bodies[side], 0.0) + rate
+                found[bodies[side]] = found.get(bodies[side], np.zeros_like(rate)) + rate
         return tuple(
             WornBody(rate, float(turning[body])) for body, rate in found.items() if rate.any()
         )

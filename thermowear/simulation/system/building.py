@@ -95,8 +95,8 @@ def build(
     coupled = coupled_without_condensation(choice, len(contacts.weights))
     made_from = made_from.solved_by(choice.name, coupled)
     with phases("assemble elasticity"):
-        at = model, comm, kinematics, bodies
-        glued = parts.get("glued", made_from.mesh, lambda: glued_pairings(*at))
+        to_glue = model, comm, kinematics, bodies
+        glued = parts.get("glued", made_from.mesh, lambda: glued_pairings(*to_glue))
         elastic, trace = parts.get(
             "elasticity",
             made_from.elasticity,
@@ -156,7 +156,7 @@ def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) ->
 
 def _check_held(model: Model, mesh: AnyMesh) -> None:
     """Reject a body that its supports leave free to move."""
-    clamped, *guided = supports(model)
+    clamped, *guided = model.supports
     for group in model.groups:
         bodies = [model.bodies[index] for index in group]
         parts = tuple(part for body in bodies for part in body.parts)
@@ -230,7 +230,7 @@ def elastic_system(
         Bᵀ of the gap in the displacement spaces.
     """
     degree = model.discretisation.degree
-    clamped, symmetric, rollers, mid_plane = supports(model)
+    clamped, symmetric, rollers, mid_plane = model.supports
     elastic = elasticity(
         bodies,
         kinematics,
@@ -253,15 +253,6 @@ def elastic_materials(model: Model) -> dict[str, ElasticMaterial]:
         part: ElasticMaterial(m.young_modulus, m.poisson_ratio, m.expansion if hot else 0.0)
         for part, m in model.materials.items()
     }
-
-
-def supports(model: Model) -> tuple[tuple[str, ...], ...]:
-    """Clamped surfaces, then those that fix the first, the second and the third component."""
-    clamped, rollers, mid_plane = (
-        tuple(surface for body in model.bodies for surface in getattr(body, kind))
-        for kind in ("fixed", "rollers", "mid_plane")
-    )
-    return clamped, model.symmetry, rollers, mid_plane
 
 
 def sliding_contact(

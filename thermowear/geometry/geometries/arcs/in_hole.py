@@ -12,8 +12,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from ....case.tables.geometry import Pressing, keyed
+from ....case.tables.geometry import keyed
 from ....case.tables.plane_geometry import PlaneGeometry
+from ....case.values.pressing import Pressing
 from ....case.values.section import KeyFault
 from ....case.values.units import Length
 from ....errors import CaseError

@@ -12,7 +12,8 @@ from typing import Literal
 
 import numpy as np
 
-from ....case.tables.geometry import Pressing, keyed, named
+from ....case.tables.geometry import keyed, named
+from ....case.values.pressing import Pressing
 from ....case.values.units import Length
 from ....errors import CaseError
 from ...mesh.tagged import TaggedMesh

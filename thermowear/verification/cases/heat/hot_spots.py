@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import cache
 from math import pi
 from typing import Any
@@ -24,6 +25,11 @@ _GIVEN = 20.0, 40.0, 80.0, 160.0
 _THICKNESSES = 0.005, 0.01, 0.02, 0.05
 _BESIDE = np.array([0.92, 0.96, 1.0, 1.04, 1.08])
 """Wave numbers beside that of the first hot spots, relative to it."""
+_RADIUS, _NUMBER = 10.0, 400
+"""Mean radius of rings whose curvature does not matter [m], and number of hot spots."""
+_WIDTHS = (0.005, 2), (0.02, 2), (0.05, 3), (0.1, 4)
+"""Widths of rings [m], and numbers of elements along them."""
+_RADII = 0.5, 1.0, 2.0
 _DEEP = 10.0
 """Thickness of the pads times the wave number."""
 _ALLOWED = 1e-3
@@ -46,6 +52,34 @@ def tei_layer_antisymmetric() -> Iterator[Check]:
 def tei_layer_symmetric() -> Iterator[Check]:
     """Hot spots opposite each other on both faces of a layer between two half-planes."""
     yield from _first(THICKNESS, True)
+
+
+def tei_ring() -> Iterator[Check]:
+    """Hot spots round rings of finite width, between plane stress and plane strain."""
+    m = _NUMBER / _RADIUS
+    stress = replace(reference(THICKNESS), layer=DISK.plane_stress, pads=PADS.plane_stress)
+    least, most = (one.critical(m, False)[0] for one in (reference(THICKNESS), stress))
+    narrow, *others = (_ring_speed(width, elements) for width, elements in _WIDTHS)
+    yield _compared("narrow ring, critical speed of plane stress [m/s]", narrow, most)
+    guided = _ring_speed(0.02, 2, guided=True)
+    yield _compared("ring with guided sides, critical speed of plane strain [m/s]", guided, least)
+    between = [*others, narrow]
+    falling = float(np.all(np.diff(between[::-1]) < 0) and least < min(between))
+    yield compare(
+        "wider rings, critical speed falls towards plane strain [1]", falling, 1.0, 1e-9, SOURCE
+    )
+    for radius in _RADII:
+        numbers = tuple(round(stress.first(False)[1] * radius) + k for k in (-4, -2, 0, 2, 4))
+        rows = [row for row in rows_of(ring(0.01, radius, numbers)) if row.symmetry < 0]
+        _, number = lowest(np.array(numbers) / radius, [row.speed_factor for row in rows])
+        quantity = f"first hot spots round a radius of {radius:g} m, number per radius [1/m]"
+        yield compare(quantity, number, stress.first(False)[1], 0.02, SOURCE)
+
+
+def _ring_speed(width: float, elements: int, guided: bool = False) -> float:
+    """Critical speed of antisymmetric modes of a ring at its mean radius [m/s]."""
+    rows = rows_of(ring(width, _RADIUS, (_NUMBER,), elements, guided))
+    return next(row.speed_factor for row in rows if row.symmetry < 0)
 
 
 def _first(thickness: float, symmetric: bool) -> Iterator[Check]:
@@ -94,9 +128,11 @@ def lowest(numbers: Sequence[float] | np.ndarray, speeds: Sequence[float]) -> tu
     middle = float(np.median(numbers))
     x = np.log(np.asarray(numbers) / middle)
     curve = np.polynomial.Polynomial.fit(x, np.log(speeds), len(x) - 1)
-    inside = [r.real for r in curve.deriv().roots() if abs(r.imag) < 1e-9 and abs(r) <= x[-1]]
-    best = min(inside, key=curve, default=0.0)
-    return float(np.exp(curve(best))), float(middle * np.exp(best))
+    roots = np.asarray(curve.deriv().roots(), dtype=complex)
+    inside = roots[(np.abs(roots.imag) < 1e-9) & (np.abs(roots) <= x[-1])].real
+    values = np.asarray(curve(inside))
+    best = int(np.argmin(values))
+    return float(np.exp(values[best])), float(middle * np.exp(inside[best]))
 
 
 def critical(
@@ -124,40 +160,61 @@ def layer(thickness: float, numbers: list[float], wear: float = 0.0) -> Result:
 
 @cache
 def _layer(thickness: float, numbers: tuple[float, ...], wear: float) -> Result:
-    depth, width = _DEEP / min(numbers), 0.01 * thickness
-    x = ["0 mm", f"{width!r} m"]
-    tables: dict[str, Any] = {
-        "title": "Hot spots on a layer between two half-planes",
+    tables = _stack((0.0, 0.01 * thickness), thickness, min(numbers)) | {
         "model": "plane-strain",
-        "geometry": {
-            "type": "stack",
-            "thickness": "10 mm",
-            "layers": {
-                "pad": {"x": x, "height": f"{depth!r} m"},
-                "layer": {"x": x, "height": f"{thickness / 2!r} m"},
-            },
-        },
-        "mesh": {"degree": 6, "elements": 2, "grading": 0.3, "skin": f"{thickness / 2000!r} m"},
-        "bodies": {
-            "pad": _body("pad", PADS),
-            "layer": _body("layer", DISK) | {"rollers": ["layer_bottom"]},
-        },
-        "contact": {"friction": FRICTION},
-        "holders": {"pad": {"surface": "pad_top", "approach": "1 um"}},
         "motions": {"pad": {"velocity": "1 m/s", "across": True}},
-        "heat": {"ambient": "0 degC", "temperature": {"pad_top": "0 degC"}},
         "analysis": {
             "type": "stability",
             "wave_lengths": [f"{2 * pi / m!r} m" for m in numbers],
             "mirror": "layer_bottom",
         },
     }
+    tables["geometry"]["thickness"] = "10 mm"
     if wear:
         tables["wear"] = {"layer": {"coefficient": f"{wear!r} 1/Pa", "per": "pressure"}}
-    return computed(load(tables))
+    return computed(load(_guided(tables)))
 
 
-def _body(name: str, material: WaveMaterial) -> dict[str, Any]:
+def ring(
+    width: float, radius: float, numbers: tuple[int, ...], elements: int = 2, guided: bool = False
+) -> Result:
+    """Stability of half a ring under a pad of its width that turns with 1 m/s."""
+    ends = radius - width / 2, radius + width / 2
+    tables = _stack(ends, THICKNESS, min(numbers) / radius) | {
+        "model": "axisymmetric",
+        "motions": {"pad": {"angular_velocity": f"{1 / radius!r} rad/s"}},
+        "analysis": {"type": "stability", "hot_spots": list(numbers), "mirror": "layer_bottom"},
+    }
+    tables["mesh"] |= {"degree": 4, "elements": elements}
+    return computed(load(_guided(tables) if guided else tables))
+
+
+def _stack(ends: tuple[float, float], thickness: float, wave_number: float) -> dict[str, Any]:
+    """Half a layer under a pad that is deep for a wave number."""
+    x = [f"{end!r} m" for end in ends]
+    heights = {"pad": _DEEP / wave_number, "layer": thickness / 2}
+    return {
+        "title": "Hot spots on a layer between two half-planes",
+        "geometry": {
+            "type": "stack",
+            "layers": {name: {"x": x, "height": f"{h!r} m"} for name, h in heights.items()},
+        },
+        "mesh": {"degree": 6, "elements": 2, "grading": 0.3, "skin": f"{thickness / 2000!r} m"},
+        "bodies": {"pad": _body(PADS), "layer": _body(DISK) | {"rollers": ["layer_bottom"]}},
+        "contact": {"friction": FRICTION},
+        "holders": {"pad": {"surface": "pad_top", "approach": "1 um"}},
+        "heat": {"ambient": "0 degC", "temperature": {"pad_top": "0 degC"}},
+    }
+
+
+def _guided(tables: dict[str, Any]) -> dict[str, Any]:
+    """Tables of a case whose bodies cannot spread sideways."""
+    for name, body in tables["bodies"].items():
+        body["symmetry"] = [f"{name}_inside", f"{name}_outside"]
+    return tables
+
+
+def _body(material: WaveMaterial) -> dict[str, Any]:
     capacity = material.conductivity / material.diffusivity
     return {
         "young_modulus": f"{material.young_modulus!r} Pa",
@@ -166,5 +223,4 @@ def _body(name: str, material: WaveMaterial) -> dict[str, Any]:
         "expansion": f"{material.expansion!r} 1/K",
         "density": "1000 kg/m^3",
         "specific_heat": f"{capacity / 1000!r} J/(kg K)",
-        "symmetry": [f"{name}_inside", f"{name}_outside"],
     }

@@ -118,11 +118,12 @@ def test_wear(found):
         assert row.speed_factor_with_wear == pytest.approx(row.speed_factor, rel=1e-4) or (
             row.number == 0 and row.speed_factor_with_wear > row.speed_factor
         )
-    none = brake([5], **{"wear.pad.coefficient": "0 1/MPa"})
-    plain = by_mode(found)
+    hardly = by_mode(brake([5], **{"wear.pad.coefficient": "1e-22 1/MPa"}))
     for symmetry in (1, -1):
-        row = by_mode(none)[5, symmetry]
-        assert row.speed_factor == pytest.approx(plain[5, symmetry].speed_factor, rel=1e-9)
+        row = hardly[5, symmetry]
+        assert row.speed_factor_with_wear == pytest.approx(row.speed_factor, rel=1e-12)
+        plain = by_mode(found)[5, symmetry].speed_factor
+        assert row.speed_factor == pytest.approx(plain, rel=1e-9)
     worn = layer.layer(layer.THICKNESS, [41.2], layer.WEAR).hot_spots.rows[1]
     exact = layer.reference(layer.THICKNESS, layer.WEAR).critical(41.2, False)
     assert worn.speed_factor_with_wear == pytest.approx(exact[0], rel=1e-3)
@@ -155,7 +156,7 @@ def test_fields_of_the_first_mode(found):
     assert first.mirror == (1, pytest.approx(-0.006))
     (fields,) = first.blocks
     cell, point = np.unravel_index(np.argmax(np.abs(fields.temperature)), fields.temperature.shape)
-    assert abs(fields.temperature[cell, point]) == pytest.approx(1.0, rel=1e-6)
+    assert abs(fields.temperature[cell, point]) == pytest.approx(1.0, rel=0.02)  # between the nodes
     assert fields.points[cell, point, 1] == pytest.approx(0.0, abs=1e-4)
 
 

@@ -37,7 +37,7 @@ def mode_fields(model: WaveModel, waves: WaveSystem, mode: WaveMode) -> HotSpotM
         ]
         grid = GRIDS[body.cell_type](n)[0]
         columns.append((body_of_cells(system, body), *sampled(body.mesh, grid, fields)))
-    found = system.bodies.in_file_order(columns)
+    found, mirror = system.bodies.in_file_order(columns), _mirror_plane(model)
     if found is None:
         return None
     kinds = {body.block: body.cell_type for body in system.bodies.each}
@@ -57,7 +57,7 @@ def mode_fields(model: WaveModel, waves: WaveSystem, mode: WaveMode) -> HotSpotM
         waves.wave.number,
         model.radius is not None,
         SIGNS[waves.symmetry],
-        _mirror_plane(model),
+        mirror,
         mode.factor,
         model.reference + 1,
         blocks,
@@ -81,7 +81,7 @@ def _nodal(model: WaveModel, waves: WaveSystem, mode: WaveMode) -> tuple[np.ndar
     thermal = model.system.thermal
     assert thermal is not None
     own = thermal.conduction.spaces.owned
-    start = comm.exscan(own) if comm.rank else 0
+    start = sum(comm.allgather(own)[: comm.rank])
     temperature = everywhere[start : start + own]
     largest = everywhere[: elasticity.opening.shape[1]]
     scale = 1 / largest[np.argmax(np.abs(largest))]

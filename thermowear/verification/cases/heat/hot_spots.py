@@ -39,13 +39,7 @@ _ALLOWED = 1e-3
 
 def tei_layer_antisymmetric() -> Iterator[Check]:
     """Hot spots that alternate on both faces of a layer between two half-planes."""
-    exact = reference(THICKNESS)
-    for m in _GIVEN:
-        mode = critical(THICKNESS, [m])["antisymmetric"][0]
-        speed, drift = exact.critical(m, False)
-        where = f"antisymmetric, wave number {m:g} /m"
-        yield _compared(f"{where}, critical speed [m/s]", mode[0], speed)
-        yield _compared(f"{where}, drift [m/s]", mode[1], drift)
+    yield from _at(_GIVEN, False)
     yield from _first(THICKNESS, False)
     yield from _similar()
     yield from _worn()
@@ -53,7 +47,18 @@ def tei_layer_antisymmetric() -> Iterator[Check]:
 
 def tei_layer_symmetric() -> Iterator[Check]:
     """Hot spots opposite each other on both faces of a layer between two half-planes."""
+    yield from _at((100.0, 160.0), True)
     yield from _first(THICKNESS, True)
+
+
+def _at(numbers: Sequence[float], symmetric: bool) -> Iterator[Check]:
+    name = "symmetric" if symmetric else "antisymmetric"
+    for m in numbers:
+        mode = critical(THICKNESS, [m])[name][0]
+        speed, drift = reference(THICKNESS).critical(m, symmetric)
+        where = f"{name}, wave number {m:g} /m"
+        yield _compared(f"{where}, critical speed [m/s]", mode[0], speed)
+        yield _compared(f"{where}, drift [m/s]", mode[1], drift)
 
 
 def tei_ring() -> Iterator[Check]:

@@ -12,11 +12,9 @@ SKIN = 2e-5
 
 
 def nodes(name, **changes):
-    """Distances of the mesh nodes from the contact, of both sides, and their other coordinate."""
-    mesh = load(tables(name, changes)).tagged_mesh()
-    y, x = mesh.points[:, 1], mesh.points[:, 0]
-    contact = 0.0 if name != "clutch-pack" else None
-    return np.unique(np.round(y - (contact or 0.0), 12)), np.unique(np.round(x, 12))
+    """Coordinates of the mesh nodes across the contact at y = 0, and along it."""
+    x, y = load(tables(name, changes)).tagged_mesh().points.T
+    return np.unique(np.round(y, 12)), np.unique(np.round(x, 12))
 
 
 @pytest.mark.parametrize("name", ["disk-brake-stability", "stacked-blocks", "annular-punch"])
@@ -41,14 +39,19 @@ def test_thick_skin():
 
 def test_stack():
     """requirement: rows at all faces between the layers of a stack."""
-    given = tables("clutch-pack", {"mesh.skin": f"{SKIN} m"})
-    case = load(given)
-    mesh = case.tagged_mesh()
-    ends = np.cumsum([0.0, *(-layer.height for layer in case.geometry.layers.values())])[1:-1]
-    ends += next(iter(case.geometry.layers.values())).height - 0.0
-    y = np.unique(np.round(mesh.points[:, 1], 12))
-    faces = y[np.flatnonzero(np.diff(y) < 1.5 * SKIN)]
-    assert len(faces) >= len(ends)
+    case = load(tables("clutch-pack", {"mesh.skin": f"{SKIN} m", "mesh.grading": 0.5}))
+    heights = [layer.height for layer in case.geometry.layers.values()]
+    faces = heights[0] - np.cumsum(heights)[:-1]
+    y = np.unique(np.round(case.tagged_mesh().points[:, 1], 12))
+    for face in faces:
+        k = int(np.argmin(np.abs(y - face)))
+        assert np.diff(y[k - 1 : k + 2]).max() < 1.5 * SKIN
+
+
+def test_equal_rows():
+    """requirement: rows that do not grow have no thinner first one."""
+    with pytest.raises(CaseError, match=r"mesh.skin: the rows grow by mesh.grading"):
+        load(tables("disk-brake-stability", {"mesh.skin": "1 um", "mesh.grading": 1.0}))
 
 
 def test_refused():

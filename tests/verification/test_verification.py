@@ -20,8 +20,8 @@ LONG = SLOW | {
     "methods-agree", "mindlin", "mindlin-sphere",
     "minimality", "moving-band", "optimal-shape", "pad-disk-pad", "patch", "pin-on-disk-3d",
     "pressure-conductance", "reciprocating", "reciprocating-3d", "ring-3d", "running-in",
-    "sliding-rod", "step-flux", "tei-growth",
-    "tei-layer-antisymmetric", "tei-layer-symmetric", "tei-ring", "temperature-dependent", "two-shoes", "two-slabs",
+    "sliding-rod", "step-flux", "tei-growth", "tei-layer-antisymmetric", "tei-layer-symmetric",
+    "tei-ring", "temperature-dependent", "two-shoes", "two-slabs",
 }  # fmt: skip
 """Cases of more than three seconds; run by `make verify`."""
 

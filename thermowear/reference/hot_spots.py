@@ -201,7 +201,7 @@ class LayerBetweenHalfPlanes:
         own, a = self.layer, self.thickness / 2
         if abs(rate) < _REMOVABLE * own.diffusivity * m**2:
             step = _REMOVABLE * own.diffusivity * m**2
-            one, other = (self._layer(m, symmetric, rate + sign * 1.5 * step) for sign in (1, -1))
+            one, other = (self._layer(m, symmetric, sign * 1.5 * step) for sign in (1, -1))
             return (one[0] + other[0]) / 2, one[1], (one[2] + other[2]) / 2
         λ = cmath.sqrt(m**2 + rate / own.diffusivity)
         t = np.tanh(m * a) if symmetric else 1 / np.tanh(m * a)

@@ -60,8 +60,7 @@ class ScriptedModel:
     kinematics : str or None
         ``"axisymmetric"``, ``"plane-strain"`` or ``"plane-stress"``; None in space.
     thickness : float or quantity
-        Thickness of plane models; twice that in a half model, as forces are those of the whole
-        [m].
+        Thickness of plane models; twice that in a half model, forces are of the whole [m].
     degree : int
         Polynomial degree of displacement and temperature.
     solver : str

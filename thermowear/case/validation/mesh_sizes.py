@@ -19,6 +19,10 @@ def mesh_sizes(case: Case | AssemblyCase) -> Iterator[Fault]:
             f"the mesh of {case.geometry.name!r} has no rows along its contact faces; remove this "
             "key",
         )
+    if case.mesh.skin is not None and any(
+        case.mesh.face(b)[1] == 1.0 for b in case.geometry.bodies
+    ):
+        yield "mesh.skin", "the rows grow by mesh.grading, which must be less than 1"
     tables = {"mesh": case.mesh} | {f"mesh.bodies.{b}": t for b, t in case.mesh.bodies.items()}
     if not case.geometry.sized:
         for path, table in tables.items():

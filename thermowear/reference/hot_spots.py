@@ -200,9 +200,10 @@ class LayerBetweenHalfPlanes:
         """Rise of a face per temperature, flattening per pressure, and heat per temperature."""
         own, a = self.layer, self.thickness / 2
         if abs(rate) < _REMOVABLE * own.diffusivity * m**2:
-            step = _REMOVABLE * own.diffusivity * m**2
-            one, other = (self._layer(m, symmetric, sign * 1.5 * step) for sign in (1, -1))
-            return (one[0] + other[0]) / 2, one[1], (one[2] + other[2]) / 2
+            step = 1.5 * _REMOVABLE * own.diffusivity * m**2
+            one, other = (np.array(self._layer(m, symmetric, sign * step)) for sign in (1, -1))
+            raised, flat, into = (one + other) / 2 + rate * (one - other) / (2 * step)
+            return complex(raised), float(flat.real), complex(into)
         λ = cmath.sqrt(m**2 + rate / own.diffusivity)
         t = np.tanh(m * a) if symmetric else 1 / np.tanh(m * a)
         slope = λ * (cmath.tanh(λ * a) if symmetric else 1 / cmath.tanh(λ * a))

@@ -29,8 +29,8 @@ from thermowear.output.report.figures import figure_text
 
 HERE = Path(__file__).resolve().parent
 CHOICES = (
-    ("bodies",),
-    ("mode", "heat", "track", "cycles", "wear", "friction", "profile", "interface"),
+    ("hot_spots_3d", "bodies"),
+    ("hot_spots", "mode", "heat", "track", "cycles", "wear", "friction", "profile", "interface"),
     ("coating",),
 )
 SIDES = (
@@ -49,6 +49,7 @@ KEYS = {
     "critical_speed_with_wear_m_per_s": "with wear",
     "critical_angular_velocity_rad_per_s": "critical speed",
     "critical_angular_velocity_with_wear_rad_per_s": "with wear",
+    "first_hot_spots_angular_velocity_rad_per_s": "first hot spots from",
     "max_pressure_Pa": "largest pressure",
     "shape_range_m": "peak-to-valley of the worn shape",
     "wear_volume_1_m3": "worn volume of body 1",

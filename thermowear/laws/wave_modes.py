@@ -57,7 +57,8 @@ def first_critical(equations: WaveEquations, guess: float = 1.0) -> WaveMode | N
     """
     plain, found = equations.without_wear, list[WaveMode]()
     for frame in equations.frames:
-        starts = (_standing(plain, frame, guess * part) for part in (1.0, _SLOW))
+        parts = (1.0, _SLOW) if frame == 0.0 else (1.0,)
+        starts = (_standing(plain, frame, guess * part) for part in parts)
         mode = next((one for one in starts if one is not None), None)
         if mode is not None:
             found.append(mode)

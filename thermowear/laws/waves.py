@@ -22,8 +22,9 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
-_ORDERING = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.01}
-"""Options of the factor of nearly symmetric matrices; minimum degree of ``Aᵀ + A``."""
+_MINIMUM_DEGREE, _AS_ORDERED = "MMD_AT_PLUS_A", "NATURAL"
+_PIVOTING = {"diag_pivot_thresh": 0.01, "options": {"SymmetricMode": True}}
+"""Options of the factor of nearly symmetric matrices."""
 _LEAST = 1e-9
 """Rate in place of zero in the frame of a worn body, relative to that of diffusion."""
 
@@ -71,6 +72,35 @@ class Gains:
 
 
 @dataclass(frozen=True)
+class OrderedHeat:
+    """Matrices of `WaveEquations` in another order of the temperatures.
+
+    Attributes
+    ----------
+    conducted, stored, carried : csc_matrix, shape (n, n)
+        K, M, and M with the rows of each body times its ω_b.
+    heated : ndarray, shape (n, q)
+    opening : ndarray, shape (q, n)
+        Complex, as what they are multiplied by.
+    order : ndarray of int, shape (n,)
+        Numbers of the temperatures in this order.
+    """
+
+    conducted: sp.csc_matrix
+    stored: sp.csc_matrix
+    carried: sp.csc_matrix
+    heated: np.ndarray
+    opening: np.ndarray
+    order: np.ndarray
+
+    def solved(self, factor: float, rate: complex) -> np.ndarray:
+        """Temperatures (n, q), see `WaveEquations.temperatures`."""
+        matrix = self.conducted + rate * self.stored + 1j * factor * self.carried
+        factors = splu(matrix.tocsc(), permc_spec=_AS_ORDERED, **_PIVOTING)
+        return factors.solve(factor * self.heated)
+
+
+@dataclass(frozen=True)
 class WaveEquations:
     """Equations of the perturbations of one wave length.
 
@@ -113,13 +143,23 @@ class WaveEquations:
         return replace(self, worn=tuple(replace(w, rate=factor * w.rate) for w in self.worn))
 
     @cached_property
-    def _carried(self) -> sp.csc_matrix:
-        return (sp.diags(self.turning) @ self.stored).tocsc()
+    def _ordered(self) -> OrderedHeat:
+        """Matrices in an order of little fill, which is the same at all speeds and rates."""
+        pattern = (self.conducted + self.stored).tocsc()
+        order = np.argsort(splu(pattern, permc_spec=_MINIMUM_DEGREE, **_PIVOTING).perm_c)
+        carried = sp.diags(self.turning) @ self.stored
+        conducted, stored, moved = (
+            sp.csc_matrix(matrix[order][:, order])
+            for matrix in (self.conducted.tocsr(), self.stored.tocsr(), carried.tocsr())
+        )
+        heated, opening = self.heated[order] + 0j, self.opening[:, order] + 0j
+        return OrderedHeat(conducted, stored, moved, heated, opening, order)
 
     def temperatures(self, factor: float, rate: complex) -> np.ndarray:
         """Temperatures (n, q) per pressure coefficient at a speed factor and a rate s [K/Pa]."""
-        matrix = self.conducted + rate * self.stored + 1j * factor * self._carried
-        return splu(matrix.tocsc(), **_ORDERING).solve(factor * self.heated.astype(complex))
+        result = np.empty(self.heated.shape, dtype=complex)
+        result[self._ordered.order] = self._ordered.solved(factor, rate)
+        return result
 
     def flexibility(self, factor: float, rate: complex) -> np.ndarray:
         """Weak gap per pressure coefficient by deflection and wear, (q, q)."""
@@ -131,7 +171,7 @@ class WaveEquations:
 
     def influence(self, factor: float, rate: complex) -> np.ndarray:
         """Operator from a pressure to the pressure by its friction heat, (q, q)."""
-        opened = self.opening @ self.temperatures(factor, rate)
+        opened = self._ordered.opening @ self._ordered.solved(factor, rate)
         return -np.linalg.solve(self.flexibility(factor, rate), opened)
 
     def gains(self, factor: float, rate: complex) -> Gains:

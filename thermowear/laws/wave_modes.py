@@ -21,7 +21,7 @@ _BESIDE_OTHERS = (-1, 4), 2
 """Rates in the frames of the other bodies, likewise."""
 _TURN = 1.0
 """Largest change of the phase of the determinant between neighbouring samples [rad]."""
-_BESIDE = 0.98
+_BESIDE, _HARDLY, _FAST = 0.98, 1.1, 1e3
 _WEAR_STEPS, _NEAR = 8, 0.1
 
 
@@ -65,25 +65,45 @@ def first_critical(equations: WaveEquations, guess: float = 1.0) -> WaveMode | N
     return _slowest(found)
 
 
-def lowest(equations: WaveEquations, mode: WaveMode) -> WaveMode:
-    """Mode of the lowest critical speed, by the number of growing waves below that of a candidate.
+def lowest(
+    equations: WaveEquations, candidate: WaveMode | None, guess: float = 1.0
+) -> tuple[WaveMode | None, bool]:
+    """Mode of the lowest critical speed without wear, by the number of growing waves.
 
-    Without wear.
+    Parameters
+    ----------
+    equations : WaveEquations
+    candidate : WaveMode or None
+        Mode below whose critical speed waves may grow.
+    guess : float
+        Speed factor near it, if there is no candidate.
+
+    Returns
+    -------
+    mode : WaveMode or None
+        None where no wave grows.
+    complete : bool
+        False if waves grow below its critical speed that were not found.
     """
-    plain = equations.without_wear
-    below = _BESIDE * mode.factor
+    plain, mode = equations.without_wear, candidate
+    below = _FAST * guess if mode is None else _BESIDE * mode.factor
     while growing(plain, below):
-        low, high = below / 2, below
-        while growing(plain, low) and low > 1e-3 * below:
-            low, high = low / 2, low
-        while high / low > 1.1:
-            middle = np.sqrt(low * high)
-            low, high = (low, middle) if growing(plain, middle) else (middle, high)
-        found = _from_samples(plain, high)
-        if found is None or found.factor >= _BESIDE * mode.factor:
-            break
+        found = _from_samples(plain, _onset(plain, below))
+        if found is None or found.factor >= below:
+            return mode, False
         mode, below = found, _BESIDE * found.factor
-    return mode
+    return mode, True
+
+
+def _onset(equations: WaveEquations, above: float) -> float:
+    """Speed factor at which a wave grows but hardly, below one at which some grow."""
+    low, high = above / 2, above
+    while low > above / _FAST and growing(equations, low):
+        low, high = low / 2, low
+    while high / low > _HARDLY:
+        middle = float(np.sqrt(low * high))
+        low, high = (low, middle) if growing(equations, middle) else (middle, high)
+    return high
 
 
 def with_wear(equations: WaveEquations, mode: WaveMode) -> WaveMode | None:

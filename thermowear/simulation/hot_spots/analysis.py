@@ -58,6 +58,12 @@ def hot_spots(
     spots = [one for one in found if one.number > 0]
     for row in rows:
         observer.row(row, _NAN)
+    for one in (one for one in found if not one.complete):
+        observer.note(
+            f"waves of the number {one.number:g} ({one.symmetry}) grow below their critical speed "
+            "in hot_spots.csv, but were not found; refine the mesh, or resolve the thermal skin "
+            "(mesh.skin)"
+        )
     extra = _summary(model, found, "mode") | _summary(model, spots, "hot_spots")
     first = min(spots, key=lambda one: one.factor, default=None)
     if first is None or first.without_wear is None:

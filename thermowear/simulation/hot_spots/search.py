@@ -30,12 +30,15 @@ class CriticalWaves:
     symmetry : str
     without_wear, with_wear : WaveMode or None
         Modes at the critical speeds; None where none grows.
+    complete : bool
+        False if waves grow at lower speeds that were not found.
     """
 
     number: float
     symmetry: Symmetry
     without_wear: WaveMode | None
     with_wear: WaveMode | None
+    complete: bool
 
     @property
     def worn_factor(self) -> float:
@@ -77,13 +80,12 @@ def search(
     return found
 
 
-def _critical(equations: WaveEquations, guess: float) -> tuple[WaveMode | None, WaveMode | None]:
-    """First modes without and with wear."""
-    first = first_critical(equations, guess)
-    if first is None:
-        return None, None
-    first = lowest(equations, first)
-    return first, with_wear(equations, first)
+def _critical(
+    equations: WaveEquations, guess: float
+) -> tuple[WaveMode | None, WaveMode | None, bool]:
+    """First modes without and with wear, and whether they are known to be the first."""
+    first, complete = lowest(equations, first_critical(equations, guess), guess)
+    return first, None if first is None else with_wear(equations, first), complete
 
 
 def growth(

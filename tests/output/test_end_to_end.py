@@ -50,6 +50,7 @@ MORE = {
 }
 COARSE = ("mesh.degree=3", "mesh.elements=6")
 QUICK = {
+    "disk-brake-hot-spots": ("mesh.elements=4", "mesh.degree=3", "analysis.hot_spots=[0, 5]"),
     RUNNING_IN: ("analysis.end_time=2 s", 'analysis.output_times=["1 s"]'),
     FRETTING: ("mesh.degree=2", "mesh.elements=12", "analysis.increments=3"),
     RECIPROCATING: ("mesh.degree=2", "analysis.cycles=4", 'analysis.output_times=["1 s"]'),
@@ -84,6 +85,10 @@ HEADS = {
     "loads": "time_s,normal_force_N,approach_m,tangential_force_N,tangential_displacement_m,"
     "max_pressure_Pa,contact_area_m2,stick_area_m2,dissipated_J,iterations,cycle,"
     "wear_volume_1_m3,wear_volume_2_m3",
+    "hot": "number,wave_number_per_m,symmetry,speed_factor,frequency_rad_per_s,drift_m_per_s,"
+    "speed_factor_with_wear,frequency_with_wear_rad_per_s",
+    "growth": "speed_factor,growth_rate_per_s,frequency_rad_per_s,growth_rate_with_wear_per_s,"
+    "frequency_with_wear_rad_per_s",
     "cycles": "cycle,time_s,wear_volume_1_m3,wear_volume_2_m3,dissipated_J,max_wear_1_m,"
     "max_wear_2_m,contact_area_m2,max_pressure_Pa,jump,error",
     "track": "x_m,wear_2_m,wear_rate_2_m_per_s",
@@ -148,6 +153,7 @@ def test_a_starter_leaves_its_files(finished):
         more |= {"heat.csv"} if heat is not None and heat.transient else set()
     if analysis.type == "stability":
         more = {"mode.csv"}
+        more |= {"hot_spots.csv", "growth.csv", "hot_spots.vtu"} if analysis.hot_spots else set()
     assert {path.name for path in folder.iterdir()} == ALWAYS | MORE.get(name, more)
     assert json.loads((folder / "run.json").read_text(encoding="utf-8"))["status"] == "done"
 

@@ -95,6 +95,8 @@ class AssemblyFile(AssemblyGeometry):
         return self
 
     def _check_surfaces(self) -> None:
+        if not any(self.surface_names.values()):
+            raise KeyFault("surfaces", "names no surface; contacts and holders need some")
         owners: dict[str, str] = {}
         for body, names in self.surface_names.items():
             if body not in self.bodies:

@@ -230,6 +230,10 @@ class _AsPair:
         """See `MeshTable.face`."""
         return self.settings.face(self.names[body])  # type: ignore[attr-defined]
 
+    def row(self, height: float) -> float:
+        """See `MeshTable.row`."""
+        return self.settings.row(height)  # type: ignore[attr-defined]
+
 
 def _image(name: str) -> str:
     """Name of the mirror image of a surface."""

@@ -13,8 +13,8 @@ from .cells import Claim, MeshedBody, Sheet, between, both, grid, level, mesh_bo
 from .divisions import SAME, graded_face, growing, growing_from_both, joined
 
 _LARGEST, _SLENDER = 3.0, 0.25
-"""Height of the largest row: in elements of equal size along the widest layer, and for layers that
-are much higher than wide in elements of equal size along the height."""
+"""Height of the largest row: in elements of equal size along the widest layer, and of graded layers
+that are much higher than wide in elements of equal size along the height."""
 
 
 @dataclass(frozen=True)
@@ -61,8 +61,10 @@ def stacked_layers(
     for name, layer, span, (over, under) in _placed(layers):
         elements, grading = face(name)
         columns = _columns(layer, layers, elements, grading)
-        largest = max(_LARGEST * widest, _SLENDER * layer.height) / elements
-        thin = row(float(np.diff(columns).min()))
+        largest, column = _LARGEST * widest / elements, float(np.diff(columns).min())
+        thin = row(column)
+        if thin < column:
+            largest = max(largest, _SLENDER * layer.height / elements)
         rows = _rows(span, (over is not None, under is not None), thin, largest, grading)
         bodies[name] = mesh_body([Sheet(grid(columns, rows))], 1)
         surfaces |= _surfaces(name, layer, span, over, under)

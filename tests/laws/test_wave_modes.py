@@ -44,7 +44,8 @@ def test_critical_speed_and_growth():
 def test_wave_that_is_carried_along():
     """requirement: s = V - 1 - i V ω where the hot body moves."""
     moving = equations(turning=3.0, frames=(0.0, 3.0))
-    mode = first_critical(moving, 0.3)
+    mode, complete = lowest(moving, first_critical(moving, 0.3), 0.01)
+    assert complete
     assert mode.factor == pytest.approx(1.0, rel=1e-9)
     assert mode.rate == pytest.approx(-3j, rel=1e-9)
     assert [growing(moving, factor) for factor in (0.98, 1.02)] == [0, 1]

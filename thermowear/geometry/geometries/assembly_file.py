@@ -95,13 +95,15 @@ class AssemblyFile(AssemblyGeometry):
         return self
 
     def _check_surfaces(self) -> None:
-        if not any(self.surface_names.values()):
+        if not self.surface_names:
             raise KeyFault("surfaces", "names no surface; contacts and holders need some")
         owners: dict[str, str] = {}
         for body, names in self.surface_names.items():
             if body not in self.bodies:
                 known = ", ".join(self.bodies)
                 raise KeyFault(f"surfaces.{body}", f"unknown body; must be one of: {known}")
+            if not all(names) or not names:
+                raise KeyFault(f"surfaces.{body}", "needs names of surfaces that are not empty")
             for name in names:
                 if name in owners:
                     raise KeyFault(

@@ -85,6 +85,7 @@ def _row(model: WaveModel, analysis: StabilityAnalysis, one: CriticalWaves) -> H
     """Row of the table of critical speeds."""
     m, plain, worn = model.wave_number(one.number), one.without_wear, one.with_wear
     frequency = _NAN if plain is None else plain.rate.imag
+    frequency = frequency if one.number else abs(frequency)  # of a pair of bands
     wears = bool(model.system.laws)
     return HotSpotRow(
         number=round(one.number) if analysis.hot_spots else 1,

@@ -7,7 +7,7 @@ from typing import Any
 
 MOST_FAULTS = 50
 """Largest number of lines reported for one case file."""
-_LONGEST = 1500  # characters of a line: the longest list of allowed words has about 1000
+_LONGEST = 1100  # characters of a line: the longest list of allowed words has about 1000
 
 
 def other_mesh(path: str | None) -> str:

@@ -38,7 +38,8 @@ def _patch(degree: int) -> Iterator[Check]:
     pressure, note = FORCE / (math.pi * RADIUS**2), f"patch, degree {degree}: "
     moved = pressure * sum(HEIGHTS.values()) / MODULUS
     interface, holder = result.interface, result.summary["holders"]["top"]
-    yield compare_worst(f"{note}pressure [Pa]", interface.pressure, pressure, 1e-10, UNIFORM)
+    # rounding at single points: 3e-10 on some processors
+    yield compare_worst(f"{note}pressure [Pa]", interface.pressure, pressure, 1e-9, UNIFORM)
     yield compare(f"{note}approach [m]", holder["approach_m"], moved, 1e-10, UNIFORM)
 
 

@@ -24,7 +24,7 @@ FRICTION, THICKNESS = 0.4, 0.01
 WEAR = 1e-11
 """Wear of the disk [1/Pa]."""
 _GIVEN = 20.0, 40.0, 80.0, 160.0
-_THICKNESSES = 0.005, 0.01, 0.02, 0.05
+_THICKNESSES = 0.005, 0.01, 0.02, 0.05, 0.1
 _BESIDE = np.array([0.92, 0.96, 1.0, 1.04, 1.08])
 """Wave numbers beside that of the first hot spots, relative to it."""
 _RADIUS, _NUMBER = 10.0, 400

@@ -15,7 +15,7 @@ _DIFFERENCE = 1e-5
 _LARGEST_STEPS = np.array([0.7, 10.0])
 """Largest changes in a step: of the logarithm of a speed factor, of a frequency by its scale."""
 _ROUGH, _ROUNDS, _SLOW = 0.02, 40, 1e-4
-_RANGE, _PER_DECADE = (-2, 4), 3
+_RANGE, _PER_DECADE = (-3, 5), 3
 """Decades of the rates that are scanned, relative to that of diffusion over a wave length."""
 _BESIDE_OTHERS = (-1, 3), 2
 """Rates in the frames of the other bodies, likewise."""
@@ -45,7 +45,7 @@ class WaveMode:
 
 
 def first_critical(equations: WaveEquations, guess: float = 1.0) -> WaveMode | None:
-    """Critical mode without wear that stands still on the reference body, or nearly so.
+    """Slowest critical mode without wear that stands still on one of the bodies, or nearly so.
 
     None if there is none; `lowest` finds others.
 
@@ -55,8 +55,12 @@ def first_critical(equations: WaveEquations, guess: float = 1.0) -> WaveMode | N
     guess : float
         Speed factor near it, if known.
     """
-    starts = (_standing(equations.without_wear, guess * part) for part in (1.0, _SLOW))
-    return next((mode for mode in starts if mode is not None), None)
+    plain, found = equations.without_wear, list[WaveMode]()
+    for frame in equations.frames:
+        parts = (1.0, _SLOW) if frame == 0.0 else (1.0,)
+        starts = (_standing(plain, frame, guess * part) for part in parts)
+        found += [mode for mode in [next((one for one in starts if one is not None), None)] if mode]
+    return _slowest(found)
 
 
 def lowest(
@@ -190,17 +194,17 @@ def _from_samples(equations: WaveEquations, factor: float) -> WaveMode | None:
     return None
 
 
-def _standing(equations: WaveEquations, factor: float) -> WaveMode | None:
-    """Critical mode that stands still on the reference body, or nearly so."""
+def _standing(equations: WaveEquations, frame: float, factor: float) -> WaveMode | None:
+    """Critical mode that stands still on a body, or nearly so."""
     for _ in range(_ROUNDS):
-        gain, shape = equations.gains(factor, 0j).largest
+        gain, shape = equations.gains(factor, -1j * factor * frame).largest
         if gain.real <= 0.0:
             return None
         change = float(np.clip(1.0 / gain.real, 1e-3, 1e3))
         factor *= change
         if abs(change - 1.0) < _ROUGH:
             break
-    return _critical(equations, WaveMode(factor, 0j, shape))
+    return _critical(equations, WaveMode(factor, -1j * factor * frame, shape))
 
 
 def _departing(equations: WaveEquations, mode: WaveMode) -> WaveMode | None:

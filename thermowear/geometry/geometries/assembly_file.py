@@ -72,7 +72,7 @@ class AssemblyFile(AssemblyGeometry):
     length_unit: Length = 1.0
     thickness: Length = 1e-3
     body_names: dict[str, CellSets] = Field(alias="bodies")
-    surface_names: dict[str, SurfaceNames] = Field(alias="surfaces")
+    surface_names: dict[str, SurfaceNames] = Field(alias="surfaces", min_length=1)
     _with_material: dict[str, dict[str, str]] = PrivateAttr(default={})
     _in_space: bool = PrivateAttr(default=False)
     _plane: bool = PrivateAttr(default=False)
@@ -95,8 +95,6 @@ class AssemblyFile(AssemblyGeometry):
         return self
 
     def _check_surfaces(self) -> None:
-        if not self.surface_names:
-            raise KeyFault("surfaces", "names no surface; contacts and holders need some")
         owners: dict[str, str] = {}
         for body, names in self.surface_names.items():
             if body not in self.bodies:

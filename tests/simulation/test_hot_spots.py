@@ -77,9 +77,9 @@ def test_layer_between_half_planes(m):
 def test_modes_without_waves_are_those_of_bands(found):
     """requirement E2: N = 0 gives the static and the oscillatory critical speeds of bands."""
     bands = by_mode(found)[0, 1]
-    assert bands.speed_factor == pytest.approx(found.summary["critical_speed_factor"], rel=1e-5)
+    assert bands.speed_factor == pytest.approx(found.summary["critical_speed_factor"], rel=1e-9)
     worn = found.summary["critical_speed_factor_with_wear"]
-    assert bands.speed_factor_with_wear == pytest.approx(worn, rel=1e-5)
+    assert bands.speed_factor_with_wear == pytest.approx(worn, rel=1e-9)
 
 
 def test_stationary_bands_to_rounding():

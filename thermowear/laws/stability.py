@@ -117,12 +117,12 @@ def leading(
     depths : ndarray, shape (m, m)
         Weak depth per coefficient of a depth in the pressure space.
     space : LoadFree
-        Full space; returned if it is not larger than requested.
+        Full space; returned unless it is more than twice as large as the subspace.
     count : int
         Number of either kind.
     """
     matrix = _influence(elastic, thermal, space)
-    if len(matrix) <= 2 * count:
+    if len(matrix) <= 4 * count:
         return space
     least = np.sort(np.abs(np.linalg.eigvals(matrix)))[-count] * (1 - 1e-9)
     _, vectors, found = schur(matrix, sort=lambda re, im=0.0: abs(complex(re, im)) >= least)

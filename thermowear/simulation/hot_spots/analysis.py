@@ -23,6 +23,7 @@ from .supports import Symmetry
 from .wave_model import WaveModel
 
 _NAN = float("nan")
+_REMEDY = "refine the mesh, or resolve the thermal skin (mesh.skin)"
 _COARSE = 0.01
 """Error estimate from which the mesh is reported as too coarse."""
 
@@ -58,12 +59,7 @@ def hot_spots(
     spots = [one for one in found if one.number > 0]
     for row in rows:
         observer.row(row, _NAN)
-    for one in (one for one in found if not one.complete):
-        observer.note(
-            f"waves of the number {one.number:g} ({one.symmetry}) grow below their critical speed "
-            "in hot_spots.csv, but were not found; refine the mesh, or resolve the thermal skin "
-            "(mesh.skin)"
-        )
+    _note_missing(model, found, observer)
     extra = _summary(model, found, "mode") | _summary(model, spots, "hot_spots")
     first = min(spots, key=lambda one: one.factor, default=None)
     if first is None or first.without_wear is None:
@@ -73,8 +69,39 @@ def hot_spots(
     curve = [_growth_row(*one) for one in growth(model, first)]
     for step in curve:
         observer.row(step, _NAN)
+    _note_unknown(curve, model.system.laws and first.with_wear, observer)
     waves = model.at(first.number, first.symmetry)
     return extra, HotSpots(rows, curve, mode_fields(model, waves, first.without_wear))
+
+
+def _note_missing(model: WaveModel, found: list[CriticalWaves], observer: Observer) -> None:
+    """Report waves that grow but were not found, without or with wear."""
+    for one in found:
+        waves = f"waves of the number {one.number:g} ({one.symmetry})"
+        if not one.complete:
+            observer.note(
+                f"{waves} grow below their critical speed in hot_spots.csv, but were not found; "
+                f"{_REMEDY}"
+            )
+        if model.system.laws and one.without_wear is not None and one.with_wear is None:
+            observer.note(
+                f"{waves} grow without wear; no critical speed with wear was found: wear may hold "
+                f"them at any speed; otherwise {_REMEDY}"
+            )
+
+
+def _note_unknown(curve: list[GrowthRow], wears: object, observer: Observer) -> None:
+    """Report speeds at which the first hot spots could not be followed."""
+    unknown = [
+        f"{step.speed_factor:.4g}"
+        for step in curve
+        if np.isnan(step.growth_rate) or (wears and np.isnan(step.growth_rate_with_wear))
+    ]
+    if unknown:
+        observer.note(
+            "the growth rate of the first hot spots is unknown (nan) at the speed factors "
+            f"{', '.join(unknown)}: the mode could not be followed there; {_REMEDY}"
+        )
 
 
 def _wave_model(end: Snapshot, analysis: StabilityAnalysis) -> WaveModel:

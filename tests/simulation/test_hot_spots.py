@@ -131,6 +131,26 @@ def test_wear(found):
     assert worn.frequency_with_wear == pytest.approx(-exact[1] * 41.2, rel=1e-3)
 
 
+class Notes(Observer):
+    """Notes of a run."""
+
+    def __init__(self):
+        self.found = []
+
+    def note(self, text):
+        self.found.append(text)
+
+
+def test_wear_that_holds_the_hot_spots_is_reported():
+    """requirement: no critical speed with wear is said in a note, not only by an empty cell."""
+    notes = Notes()
+    tables = layer.tables_of_layer(layer.THICKNESS, (41.2,), layer.WEAR)
+    rows = run_case(load(tables), observer=notes).hot_spots.rows
+    said = [note for note in notes.found if "no critical speed with wear" in note]
+    assert len(said) == 1 and "(symmetric)" in said[0]
+    assert [row.symmetry for row in rows if np.isnan(row.speed_factor_with_wear)] == [1]
+
+
 def test_growth_over_speed(found):
     """requirement: rates vanish at the critical speed, and rise through it."""
     steps, critical = found.hot_spots.growth, found.summary["first_hot_spots_speed_factor"]

@@ -147,7 +147,8 @@ def test_wear_that_holds_the_hot_spots_is_reported():
     tables = layer.tables_of_layer(layer.THICKNESS, (41.2,), layer.WEAR)
     rows = run_case(load(tables), observer=notes).hot_spots.rows
     said = [note for note in notes.found if "no critical speed with wear" in note]
-    assert len(said) == 1 and "(symmetric)" in said[0]
+    assert len(said) == 1
+    assert "(symmetric)" in said[0]
     assert [row.symmetry for row in rows if np.isnan(row.speed_factor_with_wear)] == [1]
 
 

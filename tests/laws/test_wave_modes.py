@@ -11,7 +11,7 @@ from thermowear.laws.wave_modes import (
     lowest,
     with_wear,
 )
-from thermowear.laws.waves import WaveEquations, WornBody
+from thermowear.laws.waves import WaveEquations, WaveHeat, WornBody
 
 
 def equations(gains=(1.0,), turning=0.0, wear=0.0, frames=(0.0,)):
@@ -20,11 +20,13 @@ def equations(gains=(1.0,), turning=0.0, wear=0.0, frames=(0.0,)):
     identity = np.eye(n)
     return WaveEquations(
         elastic=identity,
-        opening=-identity,
-        heated=np.diag(gains),
-        conducted=sp.eye(n, format="csc"),
-        stored=sp.eye(n, format="csc"),
-        turning=np.full(n, turning),
+        heat=WaveHeat(
+            opening=-identity,
+            heated=np.diag(gains),
+            conducted=sp.eye(n, format="csc"),
+            stored=sp.eye(n, format="csc"),
+            turning=np.full(n, turning),
+        ),
         worn=(WornBody(wear * identity, 0.0),) if wear else (),
         slowest=1.0,
         frames=frames,

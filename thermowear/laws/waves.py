@@ -72,13 +72,62 @@ class Gains:
 
 
 @dataclass(frozen=True)
-class OrderedHeat:
-    """Matrices of `WaveEquations` in another order of the temperatures.
+class WaveHeat:
+    """Conduction of a wave, and the gap that its temperatures open.
 
     Attributes
     ----------
-    conducted, stored, carried : csc_matrix, shape (n, n)
-        K, M, and M with the rows of each body times its ω_b.
+    opening : ndarray, shape (q, n)
+        B.
+    heated : ndarray, shape (n, q)
+        Q at the given speed.
+    conducted, stored : csc_matrix, shape (n, n)
+        K and M.
+    turning : ndarray, shape (n,)
+        ω_b of the body of each temperature [rad/s].
+    """
+
+    opening: np.ndarray
+    heated: np.ndarray
+    conducted: sp.csc_matrix
+    stored: sp.csc_matrix
+    turning: np.ndarray
+
+    def temperatures(self, factor: float, rate: complex) -> np.ndarray:
+        """Temperatures (n, q) per pressure coefficient at a speed factor and a rate s [K/Pa]."""
+        result = np.empty(self.heated.shape, dtype=complex)
+        result[self._ordered.order] = self._ordered.solved(factor, rate)
+        return result
+
+    def opened(self, factor: float, rate: complex) -> np.ndarray:
+        """Weak gap per pressure coefficient by friction heat, (q, q)."""
+        return self._ordered.opening @ self._ordered.solved(factor, rate)
+
+    @cached_property
+    def _ordered(self) -> OrderedHeat:
+        """Matrices in an order of little fill, which is the same at all speeds and rates."""
+        pattern = (abs(self.conducted) + abs(self.stored)).tocsc()
+        order = np.argsort(splu(pattern, permc_spec=_MINIMUM_DEGREE, **_PIVOTING).perm_c)
+        carried = sp.diags(self.turning) @ self.stored
+        pattern, *matrices = (
+            sp.csc_matrix(matrix.tocsr()[order][:, order])
+            for matrix in (pattern, self.conducted, self.stored, carried)
+        )
+        pattern.sort_indices()
+        conducted, stored, moved = (_values_at(pattern, matrix) for matrix in matrices)
+        heated, opening = self.heated[order] + 0j, self.opening[:, order] + 0j
+        return OrderedHeat(pattern, conducted, stored, moved, heated, opening, order)
+
+
+@dataclass(frozen=True)
+class OrderedHeat:
+    """Matrices of `WaveHeat` in another order of the temperatures, all with the same pattern.
+
+    Attributes
+    ----------
+    pattern : csc_matrix, shape (n, n)
+    conducted, stored, carried : ndarray, shape (nnz,)
+        Entries of K, of M, and of M with the rows of each body times its ω_b.
     heated : ndarray, shape (n, q)
     opening : ndarray, shape (q, n)
         Complex, as what they are multiplied by.
@@ -86,18 +135,34 @@ class OrderedHeat:
         Numbers of the temperatures in this order.
     """
 
-    conducted: sp.csc_matrix
-    stored: sp.csc_matrix
-    carried: sp.csc_matrix
+    pattern: sp.csc_matrix
+    conducted: np.ndarray
+    stored: np.ndarray
+    carried: np.ndarray
     heated: np.ndarray
     opening: np.ndarray
     order: np.ndarray
 
     def solved(self, factor: float, rate: complex) -> np.ndarray:
-        """Temperatures (n, q), see `WaveEquations.temperatures`."""
-        matrix = self.conducted + rate * self.stored + 1j * factor * self.carried
-        factors = splu(matrix.tocsc(), permc_spec=_AS_ORDERED, **_PIVOTING)
+        """Temperatures (n, q) in this order, see `WaveHeat.temperatures`."""
+        values = self.conducted + rate * self.stored + 1j * factor * self.carried
+        pattern = self.pattern
+        matrix = sp.csc_matrix((values, pattern.indices, pattern.indptr), pattern.shape)
+        factors = splu(matrix, permc_spec=_AS_ORDERED, **_PIVOTING)
         return factors.solve(factor * self.heated)
+
+
+def _values_at(pattern: sp.csc_matrix, matrix: sp.csc_matrix) -> np.ndarray:
+    """Entries of a matrix at those of a pattern with sorted indices that contains its own."""
+    values = np.zeros(pattern.nnz)
+    values[np.searchsorted(_places(pattern), _places(matrix))] = matrix.data
+    return values
+
+
+def _places(matrix: sp.csc_matrix) -> np.ndarray:
+    """Numbers of the entries of a matrix, column by column."""
+    columns = np.repeat(np.arange(matrix.shape[1]), np.diff(matrix.indptr))
+    return columns * matrix.shape[0] + matrix.indices
 
 
 @dataclass(frozen=True)
@@ -108,14 +173,7 @@ class WaveEquations:
     ----------
     elastic : ndarray, shape (q, q)
         A of the perturbations without resultants.
-    opening : ndarray, shape (q, n)
-        B.
-    heated : ndarray, shape (n, q)
-        Q at the given speed.
-    conducted, stored : csc_matrix, shape (n, n)
-        K and M.
-    turning : ndarray, shape (n,)
-        ω_b of the body of each temperature [rad/s].
+    heat : WaveHeat
     worn : tuple of WornBody
     slowest : float
         Rate of heat diffusion over a wave length, the scale of the rates [1/s].
@@ -124,11 +182,7 @@ class WaveEquations:
     """
 
     elastic: np.ndarray
-    opening: np.ndarray
-    heated: np.ndarray
-    conducted: sp.csc_matrix
-    stored: sp.csc_matrix
-    turning: np.ndarray
+    heat: WaveHeat
     worn: tuple[WornBody, ...]
     slowest: float
     frames: tuple[float, ...]
@@ -142,25 +196,6 @@ class WaveEquations:
         """Equations with other wear rates by a factor."""
         return replace(self, worn=tuple(replace(w, rate=factor * w.rate) for w in self.worn))
 
-    @cached_property
-    def _ordered(self) -> OrderedHeat:
-        """Matrices in an order of little fill, which is the same at all speeds and rates."""
-        pattern = (self.conducted + self.stored).tocsc()
-        order = np.argsort(splu(pattern, permc_spec=_MINIMUM_DEGREE, **_PIVOTING).perm_c)
-        carried = sp.diags(self.turning) @ self.stored
-        conducted, stored, moved = (
-            sp.csc_matrix(matrix[order][:, order])
-            for matrix in (self.conducted.tocsr(), self.stored.tocsr(), carried.tocsr())
-        )
-        heated, opening = self.heated[order] + 0j, self.opening[:, order] + 0j
-        return OrderedHeat(conducted, stored, moved, heated, opening, order)
-
-    def temperatures(self, factor: float, rate: complex) -> np.ndarray:
-        """Temperatures (n, q) per pressure coefficient at a speed factor and a rate s [K/Pa]."""
-        result = np.empty(self.heated.shape, dtype=complex)
-        result[self._ordered.order] = self._ordered.solved(factor, rate)
-        return result
-
     def flexibility(self, factor: float, rate: complex) -> np.ndarray:
         """Weak gap per pressure coefficient by deflection and wear, (q, q)."""
         result = self.elastic.astype(complex)
@@ -171,8 +206,7 @@ class WaveEquations:
 
     def influence(self, factor: float, rate: complex) -> np.ndarray:
         """Operator from a pressure to the pressure by its friction heat, (q, q)."""
-        opened = self._ordered.opening @ self._ordered.solved(factor, rate)
-        return -np.linalg.solve(self.flexibility(factor, rate), opened)
+        return -np.linalg.solve(self.flexibility(factor, rate), self.heat.opened(factor, rate))
 
     def gains(self, factor: float, rate: complex) -> Gains:
         """Eigenvalues and eigenvectors of `influence`."""

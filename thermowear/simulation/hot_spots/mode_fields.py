@@ -75,7 +75,7 @@ def _nodal(model: WaveModel, waves: WaveSystem, mode: WaveMode) -> tuple[np.ndar
     conduction, elasticity = waves.conduction, waves.elasticity
     comm = model.system.comm
     shape = comm.bcast(mode.shape)
-    rises = waves.equations.temperatures(mode.factor, mode.rate) @ shape
+    rises = waves.equations.heat.temperatures(mode.factor, mode.rate) @ shape
     everywhere = np.zeros(len(conduction.kept), dtype=complex)
     everywhere[conduction.kept] = rises
     thermal = model.system.thermal

@@ -10,7 +10,7 @@ import numpy as np
 from ...bulk.waves import Wave, wave_along
 from ...contact.operators.pressure import dense
 from ...laws.stability import LoadFree, load_free
-from ...laws.waves import WaveEquations, WornBody
+from ...laws.waves import WaveEquations, WaveHeat, WornBody
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from .body_speeds import body_speeds
@@ -112,11 +112,13 @@ class WaveModel:
         opening = np.pad(elasticity.opening, ((0, 0), (0, len(kept) - n)))
         equations = WaveEquations(
             elastic=space(elasticity.compliance),
-            opening=space.gaps.T @ opening[:, kept],
-            heated=conduction.heated[kept] @ space.pressures,
-            conducted=conduction.conducted[kept][:, kept].tocsc(),
-            stored=conduction.stored[kept][:, kept].tocsc(),
-            turning=turning[conduction.body[kept]],
+            heat=WaveHeat(
+                opening=space.gaps.T @ opening[:, kept],
+                heated=conduction.heated[kept] @ space.pressures,
+                conducted=conduction.conducted[kept][:, kept].tocsc(),
+                stored=conduction.stored[kept][:, kept].tocsc(),
+                turning=turning[conduction.body[kept]],
+            ),
             worn=self._worn(space, turning),
             slowest=self._slowest(number),
             frames=self._frames(turning),

@@ -3,9 +3,11 @@
 ARG BASE=debian:trixie-slim
 
 FROM ${BASE} AS environment
-COPY scripts/packages /usr/share/thermowear/packages
+# a further list of packages: scripts/packages.$WITH
+ARG WITH=
+COPY scripts/packages* /usr/share/thermowear/
 RUN apt-get update \
-    && sed 's/#.*//' /usr/share/thermowear/packages \
+    && cd /usr/share/thermowear && sed 's/#.*//' packages ${WITH:+"packages.$WITH"} \
         | DEBIAN_FRONTEND=noninteractive xargs apt-get install --yes --no-install-recommends \
     && rm -rf /var/lib/apt/lists/* /var/cache/apt/*.bin
 

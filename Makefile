@@ -2,7 +2,8 @@
 ENV = scripts/env
 CACHE = $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/thermowear
 RUFF = $(CACHE)/ruff-0.14/bin/ruff
-PYTEST = OMP_NUM_THREADS=1 $(ENV) python3 -m pytest
+WHOLE = THERMOWEAR_WITH=studies $(ENV)
+PYTEST = OMP_NUM_THREADS=1 $(WHOLE) python3 -m pytest
 
 .PHONY: help demo gallery test verify test-next lint types image meshes clean
 
@@ -33,7 +34,7 @@ lint: $(RUFF) ## ruff, and shellcheck where it is installed
 	if command -v shellcheck >/dev/null; then shellcheck scripts/env scripts/image; fi
 
 types: ## mypy
-	$(ENV) mypy
+	$(WHOLE) mypy
 
 image: ## the container image thermowear
 	scripts/image

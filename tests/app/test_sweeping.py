@@ -47,7 +47,8 @@ def test_a_sweep_leaves_its_files(capsys):
     frictions = ("--over", "contact.friction=0.1,0.3")
     assert main(["sweep", BLOCK, *SMALL, *LOADS, *frictions]) == 0
     path = Path("results/block_on_disk-sweep")
-    names = {"sweep.csv", "shapes.png", "sweep.png", "run.json", "001", "002", "003", "004"}
+    names = {"sweep.csv", "shapes.png", "sweep.png", "run.json", "variants.jsonl"}
+    names |= {"001", "002", "003", "004"}
     assert {entry.name for entry in path.iterdir()} == names
     assert {entry.name for entry in (path / "003").iterdir()} == {
         "interface.csv",

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.app.variants import parse_over
+from thermowear.app.batch.variants import parse_over
 from thermowear.output.tables import write_points
 
 from ..conftest import DEMOS, demo_script

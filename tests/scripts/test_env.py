@@ -12,9 +12,11 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
+LISTS = ("packages", "packages.studies")
 PACKAGES = [
     words[0]
-    for line in (ROOT / "scripts/packages").read_text().splitlines()
+    for name in LISTS
+    for line in (ROOT / "scripts" / name).read_text().splitlines()
     if (words := line.partition("#")[0].split())
 ]
 # modules that come with a package of another name
@@ -25,7 +27,7 @@ PACKAGE_OF = dict.fromkeys(["basix", "ffcx", "ufl"], "python3-dolfinx") | {
 }
 
 
-OPTIONAL = {"pandas"}
+OPTIONAL = {"pandas", "distributed", "emcee"}
 """Modules that are used where they are installed, and asked for by a message elsewhere."""
 
 
@@ -128,9 +130,9 @@ def test_container_sees_project_and_directory_of_the_caller(tmp_path):
     asked = log.read_text().splitlines()
     run = asked.index("run")
     assert asked[:4] == ["info", "build", "--target", "environment"]
-    assert asked[4] == "--tag"
-    assert asked[6:run] == [str(ROOT)]
-    image, asked = asked[5], asked[run:]
+    assert asked[4:7] == ["--build-arg", "WITH=", "--tag"]
+    assert asked[8:run] == [str(ROOT)]
+    image, asked = asked[7], asked[run:]
     options = list(itertools.pairwise(asked))
     for volume in (ROOT, here, next((cache / "thermowear").glob("container-*"))):
         assert ("--volume", f"{volume}:{volume}") in options
@@ -142,20 +144,31 @@ def test_container_sees_project_and_directory_of_the_caller(tmp_path):
 
 def test_dockerfile_reads_the_list():
     text = (ROOT / "Dockerfile").read_text().replace("\\\n", " ")
-    assert re.search(r"^COPY scripts/packages (\S+)$", text, re.M)
+    (folder,) = re.findall(r"^COPY scripts/packages\* (\S+)/$", text, re.M)
     (install,) = re.findall(r"^RUN (.*apt-get install.*)$", text, re.M)
-    copied = re.search(r"^COPY scripts/packages (\S+)$", text, re.M)[1]
-    assert copied in install
+    assert re.search(rf"cd {folder} && sed '\S+' packages \$\{{WITH:\+\S+packages.\$WITH", install)
     # and no package besides
     assert re.search(r"apt-get install(\s+--\S+)*\s+&&", install)
     ignored = (ROOT / ".dockerignore").read_text().splitlines()
-    assert "!scripts/packages" in ignored
+    assert "!scripts/packages*" in ignored
 
 
 def test_list_provides_every_import():
     for name in third_party("thermowear", "tests"):
         package = PACKAGE_OF.get(name, "python3-" + name.replace("_", "-"))
         assert package in PACKAGES, f"{name} is imported; is it in {package}?"
+
+
+def test_env_with_further_packages():
+    """requirement: a list of scripts/ by its name; others are refused."""
+    done = subprocess.run(
+        [ROOT / "scripts/env", "true"],
+        env=os.environ | {"THERMOWEAR_WITH": "nothing", "THERMOWEAR_ENV": "direct"},
+        text=True,
+        capture_output=True,
+    )
+    assert done.returncode == 1
+    assert "THERMOWEAR_WITH is nothing; it may be studies" in done.stderr
 
 
 def test_env_asks_for_every_import_of_the_package():

@@ -41,14 +41,7 @@ def parser() -> argparse.ArgumentParser:
         help="a key and its values, such as load.force='1 kN,2 kN'; can be repeated",
     )
     _add_output(sweep, "DIR", help="default: results/<case>-sweep")
-    _add_flag(sweep, "--overwrite", "replace existing results")
-    sweep.add_argument("--no-pictures", dest="pictures", action="store_false")
-    sweep.add_argument(
-        "--processes",
-        metavar="N",
-        type=_positive,
-        help="for variants that share no factorisations; default: number of cores",
-    )
+    _add_batch(sweep)
 
     _command(commands, "cases", "list the starter cases")
 
@@ -119,6 +112,26 @@ def _add_flag(command, name: str, text: str | None = None) -> None:
 
 def _add_output(command: argparse.ArgumentParser, metavar: str, **settings: Any) -> None:
     command.add_argument("-o", "--output", metavar=metavar, type=Path, **settings)
+
+
+def _add_batch(command: argparse.ArgumentParser) -> None:
+    """Options of commands that compute many variants of a case."""
+    existing = command.add_mutually_exclusive_group()
+    _add_flag(existing, "--overwrite", "replace existing results")
+    _add_flag(existing, "--resume", "compute the variants that are missing in DIR")
+    command.add_argument("--no-pictures", dest="pictures", action="store_false")
+    command.add_argument(
+        "--executor",
+        choices=("processes", "mpi", "dask"),
+        default="processes",
+        help="processes of this machine; ranks started by mpirun; workers of Dask",
+    )
+    command.add_argument(
+        "--processes", metavar="N", type=_positive, help="default: number of cores, at most"
+    )
+    command.add_argument(
+        "--scheduler", metavar="ADDRESS", help="of Dask; default: workers on this machine"
+    )
 
 
 def _add_case(command: argparse.ArgumentParser) -> None:

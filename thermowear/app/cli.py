@@ -117,7 +117,7 @@ def _validate(chosen) -> int:
 
         properties += described(whole_bodies(case.tagged_mesh(), case.geometry))
     if case.initial_shapes:
-        from .workers import start_petsc
+        from .batch.computing import start_petsc
 
         start_petsc()
         from mpi4py import MPI
@@ -146,7 +146,7 @@ def _mesh(chosen) -> int:
     _check_absent(chosen.output, chosen.overwrite)
     if case.mesh.accuracy is not None:
         from ..simulation.from_case import with_accurate_mesh
-        from .workers import start_petsc
+        from .batch.computing import start_petsc
 
         start_petsc()
         case = with_accurate_mesh(case)
@@ -163,7 +163,7 @@ def _shape(chosen) -> int:
     if _launched_processes() > 1:
         raise CaseError("shape: runs in one process; start it without mpirun")
     from .shaping import check_format, shape, write_shape
-    from .workers import start_petsc
+    from .batch.computing import start_petsc
 
     check_format(chosen.output)
     start_petsc()
@@ -245,7 +245,7 @@ def _run(chosen) -> int:
     began = time.perf_counter()
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     with DeferredSignals():  # some libraries print a traceback where their import is interrupted
-        from .workers import start_petsc
+        from .batch.computing import start_petsc
 
         start_petsc()
 
@@ -266,8 +266,11 @@ def _run(chosen) -> int:
 
 
 def _sweep(chosen) -> int:
-    if _launched_processes() > 1:
-        raise CaseError("sweep: starts its own processes (--processes N); start it without mpirun")
+    if _launched_processes() > 1 and chosen.executor != "mpi":
+        raise CaseError(
+            "sweep: starts its own processes (--processes N); start it without mpirun, or use "
+            "--executor mpi"
+        )
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     from .sweeping import run_sweep
 

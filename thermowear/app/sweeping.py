@@ -5,10 +5,13 @@ Modules that need dolfinx are imported in functions, as the distributing process
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
 import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -17,19 +20,22 @@ from typing import Any
 from .. import load
 from ..case import AnyCase, as_plain
 from ..errors import CaseError, ComputationError
-from ..interrupts import DeferredSignals
 from ..output.console import Terminal
 from ..output.folder import ResultsFolder
 from ..output.sweep import SweepFolder, draw_sweep, swept
 from ..results import Result
-from .variants import Variant, parse_over, variants, written
-from .workers import start_petsc, work_off
+from .batch.computing import Lost, Stopped, compute
+from .batch.executors import Choice, Crew, Workers
+from .batch.variants import Variant, grouped, parse_over, variants, written
 
 
 def sweep(
-    case: AnyCase | str | Path, over: Mapping[str, Sequence[Any]]
+    case: AnyCase | str | Path,
+    over: Mapping[str, Sequence[Any]],
+    executor: Executor | None = None,
+    workers: int | None = None,
 ) -> list[tuple[dict[str, Any], Result | ComputationError]]:
-    """Compute all combinations of values of keys of a case in this process.
+    """Compute all combinations of values of keys of a case.
 
     Parameters
     ----------
@@ -37,6 +43,11 @@ def sweep(
         Case, or path of a case file.
     over : mapping of str to sequence
         Values by key path, as in a case file: ``{"load.force": ["1 kN", "2 kN"]}``.
+    executor : concurrent.futures.Executor, optional
+        Executor of processes, of MPI ranks (`mpi4py.futures`), of a cluster (``get_executor`` of a
+        client of Dask); by default the variants are computed in this process.
+    workers : int, optional
+        Number of workers of the executor; by default the number of cores of this machine.
 
     Returns
     -------
@@ -50,27 +61,41 @@ def sweep(
     KeyboardInterrupt
         If a stop was requested during a variant; no further one is computed.
     """
-    from ..simulation.analyses.run import Series, groups
-    from ..simulation.from_case import analysis_of, model_of, with_accurate_mesh
-
     source = as_plain(case) if isinstance(case, AnyCase) else case
     found = variants(source, {key: [written(v) for v in values] for key, values in over.items()})
+    tasks: list[tuple[int, AnyCase | dict]] = [
+        (k, variant.case if executor is None else as_plain(variant.case))
+        for k, variant in enumerate(found)
+    ]
+    groups = [[tasks[k] for k in group] for group in grouped([v.case for v in found])]
     results: dict[int, Result | ComputationError] = {}
-    for group in groups([model_of(variant.case) for variant in found]):
-        series = Series()
-        for k in group:
-            try:
-                case = found[k].case
-                case = with_accurate_mesh(case, series.comm)
-                result = series.run(model_of(case), analysis_of(case))
-            except ComputationError as error:
-                results[k] = error
-                continue
-            if isinstance(result.stopped, KeyboardInterrupt):
-                raise result.stopped
-            results[k] = result
+
+    def received(outcome) -> None:
+        if isinstance(outcome, Lost):
+            outcome = outcome.task[0], ComputationError(outcome.reason)
+        results[outcome[0]] = outcome[1]
+
+    compute(groups, _result, received, executor, workers or len(os.sched_getaffinity(0)))
     given = (dict(zip(over, values, strict=True)) for values in product(*over.values()))
     return [(values, results[k]) for k, values in enumerate(given)]
+
+
+def _result(
+    series, task: tuple[int, AnyCase | dict[str, Any]]
+) -> tuple[int, Result | ComputationError]:
+    """Compute a variant, by its number and case; other processes get its tables."""
+    from ..simulation.from_case import analysis_of, model_of, with_accurate_mesh
+
+    number, given = task
+    case = load(given) if isinstance(given, dict) else given
+    try:
+        case = with_accurate_mesh(case, series.comm)
+        result = series.run(model_of(case), analysis_of(case))
+    except ComputationError as error:
+        return number, error
+    if isinstance(result.stopped, KeyboardInterrupt):
+        raise result.stopped
+    return number, result
 
 
 @dataclass(frozen=True)
@@ -102,19 +127,26 @@ def run_sweep(chosen) -> int:
     ComputationError
         If any variant failed; the others are computed and written.
     """
+    with Choice(chosen.executor, chosen.processes, chosen.scheduler).crew() as crew:
+        return 0 if crew.serves else _run_with(crew, chosen)
+
+
+def _run_with(crew: Crew, chosen) -> int:
     over = parse_over(chosen.over)
     found = variants(chosen.case, over, tuple(chosen.overrides))
     tables = [as_plain(variant.case) for variant in found]
     keys = [swept(key, [v.values[key] for v in found], tables) for key in over]
     path = chosen.output or Path("results") / f"{chosen.case.stem}-sweep"
-    folder = SweepFolder(path, over, keys, chosen.overwrite)
+    checksum = checksum_of(tables)
+    folder = SweepFolder(path, over, keys, checksum, chosen.overwrite, chosen.resume)
     report = _Report(folder, found)
-    jobs = [
-        Job(v.number, plain, folder.variant(v.number))
-        for v, plain in zip(found, tables, strict=True)
-    ]
+    left = [k for k, variant in enumerate(found) if variant.number not in folder.ended]
+    jobs = {k: Job(k + 1, tables[k], folder.variant(k + 1)) for k in left}
     try:
-        _compute_all(found, jobs, chosen.processes, report)
+        groups = grouped([found[k].case for k in left])
+        tasks = [[jobs[left[k]] for k in group] for group in groups]
+        workers = crew.workers(len(groups), len(left)) if left else Workers(None)
+        compute(tasks, compute_variant, report.received, workers.executor, workers.count)
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
         report.close(chosen.pictures, "interrupted" if interrupted else "failed", str(error))
@@ -126,39 +158,14 @@ def run_sweep(chosen) -> int:
     return 0
 
 
-def _compute_all(found: list[Variant], jobs: list[Job], processes: int | None, report) -> None:
-    """Compute groups of variants with shared factorisations, in parallel processes if several."""
-    with DeferredSignals():
-        start_petsc()
-        from ..simulation.analyses.run import groups
-        from ..simulation.from_case import model_of
-
-    models = [model_of(variant.case) for variant in found]
-    tasks = [[jobs[k] for k in group] for group in groups(models)]
-    processes = min(processes or len(os.sched_getaffinity(0)), len(tasks))
-    if processes == 1:
-        for task in tasks:
-            compute(task, report.ended)
-    else:
-        longest_first = sorted(tasks, key=len, reverse=True)
-        work_off(longest_first, processes, compute, report.ended, report.lost)
+def checksum_of(tables: Sequence[dict[str, Any]]) -> str:
+    """Checksum of cases."""
+    text = json.dumps(tables, sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
-def compute(jobs: list[Job], tell: Callable[[Ended], None]) -> None:
-    """Compute variants that share factorisations, and write their folders."""
-    with DeferredSignals():
-        start_petsc()
-        from ..simulation.analyses.run import Series
-
-    series = Series()
-    for job in jobs:
-        ended = _computed(series, job)
-        tell(ended)
-        if ended.status == "interrupted":
-            raise KeyboardInterrupt
-
-
-def _computed(series, job: Job) -> Ended:
+def compute_variant(series, job: Job) -> Ended:
+    """Compute a variant, and write its folder."""
     from ..simulation.from_case import analysis_of, model_of, with_accurate_mesh
     from ..timer import Phases
     from .session import Recorder
@@ -180,7 +187,10 @@ def _computed(series, job: Job) -> Ended:
         folder.close(_status(problem).partition(":")[0], _message(problem))
     except (CaseError, OSError) as error:  # of the folder; an interrupt still ends the sweep
         problem = problem if isinstance(problem, KeyboardInterrupt) else error
-    return Ended(job.number, _status(problem), summary, time.perf_counter() - began)
+    ended = Ended(job.number, _status(problem), summary, time.perf_counter() - began)
+    if isinstance(problem, KeyboardInterrupt):
+        raise Stopped(ended)
+    return ended
 
 
 def _status(problem: BaseException | None) -> str:
@@ -206,29 +216,23 @@ class _Report:
         self._folder = folder
         self._found = found
         self._console = Terminal(highlight=False)
-        self._ended: dict[int, str] = {}
         self._began = time.perf_counter()
 
-    def ended(self, ended: Ended) -> None:
-        """Record a finished variant."""
-        self._ended[ended.number] = ended.status
-        self._folder.add(ended.number, ended.status, ended.summary, ended.seconds)
+    def received(self, outcome: Ended | Lost) -> None:
+        """Record a finished variant, or one whose process has died."""
+        if isinstance(outcome, Lost):
+            outcome = Ended(outcome.task.number, f"failed: {outcome.reason}", None, 0.0)
+        self._folder.add(outcome.number, outcome.status, outcome.summary, outcome.seconds)
         self._console.print(
-            f"{len(self._ended)}/{len(self._found)}   {self._name(ended.number)}   "
-            f"{ended.status}, {ended.seconds:.3f} s",
+            f"{len(self._folder.ended)}/{len(self._found)}   {self._name(outcome.number)}   "
+            f"{outcome.status}, {outcome.seconds:.3f} s",
             markup=False,
             soft_wrap=True,
         )
 
-    def lost(self, jobs: list[Job], why: str) -> None:
-        """Record variants whose process has died as failed."""
-        for job in jobs:
-            if job.number not in self._ended:
-                self.ended(Ended(job.number, f"failed: {why}", None, 0.0))
-
     def failures(self) -> str:
         """Failures in one line; empty if all variants succeeded."""
-        failed = {k: status for k, status in sorted(self._ended.items()) if status != "done"}
+        failed = {k: status for k, status in sorted(self._folder.ended.items()) if status != "done"}
         if not failed:
             return ""
         first, status = next(iter(failed.items()))
@@ -238,7 +242,7 @@ class _Report:
     def close(self, pictures: bool, status: str, message: str) -> None:
         """Record the end of the sweep, and draw its pictures."""
         self._folder.close(status, message, time.perf_counter() - self._began)
-        if pictures and any(status == "done" for status in self._ended.values()):
+        if pictures and any(status == "done" for status in self._folder.ended.values()):
             draw_sweep(self._folder.path)
         self._console.print(f"results in {self._folder.path}", markup=False, soft_wrap=True)
 

@@ -237,11 +237,16 @@ _STEPPED: dict[type, Callable[..., AnalysisHistory]] = {
 
 
 class Series:
-    """Sequence of models with a shared set-up cache, on all ranks; see `groups`."""
+    """Sequence of models with a shared set-up cache; see `groups`.
 
-    comm = MPI.COMM_WORLD
+    Parameters
+    ----------
+    comm : mpi4py.MPI.Comm, optional
+        All ranks by default.
+    """
 
-    def __init__(self):
+    def __init__(self, comm=None):
+        self.comm = MPI.COMM_WORLD if comm is None else comm
         self._parts = SetupCache()
 
     def run(

@@ -9,11 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .. import load
-from ..errors import CaseError
+from ... import load
+from ...errors import CaseError
+from ...interrupts import DeferredSignals
+from .computing import start_petsc
 
 if TYPE_CHECKING:
-    from ..case import AnyCase
+    from ...case import AnyCase
 
 _PAIRS = {"[": "]", "{": "}"}
 _QUOTES = "\"'"
@@ -76,6 +78,16 @@ def variants(
             lines += [line] if common else [f"{variant}: {line}" for variant in where]
         raise CaseError(*lines)
     return found
+
+
+def grouped(cases: Sequence[AnyCase]) -> list[list[int]]:
+    """Numbers of the cases that share set-up results; see `simulation.analyses.run.groups`."""
+    with DeferredSignals():
+        start_petsc()
+        from ...simulation.analyses.run import groups
+        from ...simulation.from_case import model_of
+
+    return groups([model_of(case) for case in cases])
 
 
 def parse_over(texts: Sequence[str]) -> dict[str, list[str]]:

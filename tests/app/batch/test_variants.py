@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from thermowear.app.variants import parse_over, variants, written
+from thermowear.app.batch.variants import parse_over, variants, written
 from thermowear.case.starters import starter_text
 from thermowear.errors import CaseError
 

@@ -1,0 +1,1 @@
+"""Batches of variants of a case: groups, executors, and their computation."""

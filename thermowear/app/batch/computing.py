@@ -90,6 +90,7 @@ def compute(
     received: Callable[[Any], None],
     executor: Executor | None = None,
     workers: int = 1,
+    series=None,
 ) -> None:
     """Compute tasks, and report their outcomes as they arrive.
 
@@ -105,6 +106,8 @@ def compute(
         None computes in this process.
     workers : int
         Number of workers of the executor.
+    series : Series, optional
+        Series of this process, with set-up results of earlier batches.
 
     Raises
     ------
@@ -112,7 +115,7 @@ def compute(
         After the outcomes that running calls return when they are interrupted.
     """
     if executor is None:
-        series = new_series()
+        series = series or new_series()
         for task in chain.from_iterable(groups):
             if _report(compute_chunk([task], work, series), received).interrupted:
                 raise KeyboardInterrupt

@@ -8,6 +8,8 @@ from pydantic import Field, model_validator
 
 from ...errors import CaseError
 from ...laws.time_course import LoadHistories
+from ..studies.calibration import CalibrationTable
+from ..studies.study import StudyTable
 from ..tables.analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from ..tables.conditions import HeatTable
 from ..tables.contact import InterfaceTable
@@ -57,6 +59,8 @@ class AssemblyCase(Section):
         Initial | Steady | Transient | Fretting | Reciprocating | Stability,
         Field(discriminator="type"),
     ]
+    calibrate: CalibrationTable | None = None
+    study: StudyTable | None = None
 
     @model_validator(mode="after")
     def _cell_sets_as_parts(self):

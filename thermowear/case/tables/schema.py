@@ -11,6 +11,8 @@ from pydantic import Field, model_validator
 
 from ...errors import CaseError
 from ...laws.time_course import LoadHistories
+from ..studies.calibration import CalibrationTable
+from ..studies.study import StudyTable
 from ..values.percentages import Percentage
 from ..values.pressing import Pressing
 from ..values.section import Number, Section
@@ -135,6 +137,8 @@ class Case(Section):
         Initial | Steady | Transient | Fretting | Reciprocating | Stability,
         Field(discriminator="type"),
     ]
+    calibrate: CalibrationTable | None = None
+    study: StudyTable | None = None
 
     @model_validator(mode="after")
     def _cell_sets_as_parts(self):

@@ -17,6 +17,8 @@ _FILES = ("geometry.path", ".initial_shape")
 """Ends of keys of files, whose path may change: meshes and gaps read from them are compared."""
 _END = {"analysis.end_time", "analysis.cycles", "wear.cycles"}
 _OUTPUTS = "analysis.output_times"
+_ASIDE = {"calibrate", "study"}
+"""Tables of other commands."""
 _LONGEST = 60  # characters of a value that is shown
 
 
@@ -42,7 +44,11 @@ class Change:
 
 def changes(before: Section, now: Section) -> list[Change]:
     """Keys whose values differ between two cases, in the order of the case."""
-    return list(_differences(as_plain(before), as_plain(now), ""))
+    one, other = (
+        {key: table for key, table in as_plain(case).items() if key not in _ASIDE}
+        for case in (before, now)
+    )
+    return list(_differences(one, other, ""))
 
 
 def irrelevant_changes_only(before: Section, now: Section) -> bool:

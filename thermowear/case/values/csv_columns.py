@@ -38,11 +38,24 @@ class Columns:
     lines: list[int]
 
 
-def read_columns(path: Path, known: dict[str, str]) -> Columns:
+def column_names(path: Path) -> list[str]:
+    """Names of the columns of a CSV file, without units.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
+    rows = _rows(path.name, _text(path))
+    matches = [_HEAD.fullmatch(cell) for cell in (rows[0][1] if rows else [])]
+    return [_name(match[1]) for match in matches if match is not None]
+
+
+def read_columns(path: Path, known: dict[str, str], ordered: bool = True) -> Columns:
     """Read a CSV file: a header such as ``time [s], force [kN]``, then rows of numbers.
 
     Commas, semicolons or tabs separate the cells; numbers have a decimal point; empty lines and
-    comments (``#``) are skipped. Times must increase.
+    comments (``#``) are skipped.
 
     Parameters
     ----------
@@ -50,6 +63,8 @@ def read_columns(path: Path, known: dict[str, str]) -> Columns:
     known : dict of str to str
         Allowed keys, each with an example of a suitable unit; empty for plain numbers. Words of a
         key may be separated by spaces.
+    ordered : bool
+        Times must increase.
 
     Raises
     ------
@@ -68,7 +83,7 @@ def read_columns(path: Path, known: dict[str, str]) -> Columns:
     if len(body) > MOST_ROWS:
         raise ValueError(f"{name} has {len(body)} rows; at most {MOST_ROWS} are allowed")
     table = [_numbers(name, line, cells, list(heads)) for line, cells in body]
-    if "time" in heads:
+    if ordered and "time" in heads:
         _increasing(name, [row[list(heads).index("time")] for row in table], body)
     values: dict[str, list[str | float]] = {
         key: [f"{x!r} {unit}" if unit else x for x in column]
@@ -115,7 +130,7 @@ def _heads(
     where, heads = f"{name}, line {line}", {}
     for cell in cells:
         match = _HEAD.fullmatch(cell)
-        key = "_".join(match[1].lower().split()) if match else ""
+        key = _name(match[1]) if match else ""
         if match is None or key not in known:
             raise ValueError(f"{where}: found the column {_shown(cell)}; known: {allowed}")
         if key in heads:
@@ -131,6 +146,11 @@ def _heads(
             )
         heads[key] = unit
     return heads
+
+
+def _name(text: str) -> str:
+    """Key from the words of a header."""
+    return "_".join(text.lower().split())
 
 
 def _numbers(name: str, line: int, cells: list[str], keys: list[str]) -> list[float]:

@@ -1,0 +1,1 @@
+"""Calibration: parameters of a case from measured data."""

@@ -1,0 +1,126 @@
+"""Experiments: runs of a case under the conditions of the measurements."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ...case import AnyCase, as_plain, load
+from ...case.studies.calibration import CalibrationTable
+from ...case.tables.analyses import Timed
+from ...errors import CaseError
+from .measurements import Measurement
+
+_OTHER = ("calibrate", "study", "title")
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Run that predicts the measurements made under the same conditions.
+
+    Attributes
+    ----------
+    tables : dict
+        Case as plain tables, with the conditions of the measurements.
+    measurements : tuple of Measurement
+    times : tuple of float
+        Times that the steps hit exactly [s].
+    """
+
+    tables: dict[str, Any]
+    measurements: tuple[Measurement, ...]
+    times: tuple[float, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """Number of measured values."""
+        return sum(len(one.values) for one in self.measurements)
+
+    def case(self, overrides: tuple[str, ...]) -> AnyCase:
+        """Case with values of the parameters.
+
+        Raises
+        ------
+        CaseError
+        """
+        return load(self.tables, overrides)
+
+    def needs_times(self) -> bool:
+        """Test whether times of measurements at sliding distances are not known yet."""
+        return any("sliding_distance" in one.reading.at for one in self.measurements)
+
+    def ends_with_times(self) -> bool:
+        """Test whether nothing is measured at the end of the run, but all at given times."""
+        return bool(self.times) and all(
+            {"time", "sliding_distance"} & one.reading.at.keys() for one in self.measurements
+        )
+
+    def at_distances(self, time: np.ndarray, distance: np.ndarray) -> Experiment:
+        """Experiment whose steps hit the measured sliding distances, too.
+
+        Parameters
+        ----------
+        time, distance : ndarray
+            Rows of a run with the same motion [s, m].
+        """
+        wanted = [m.reading.at.get("sliding_distance", np.zeros(0)) for m in self.measurements]
+        found = np.interp(np.concatenate(wanted), distance, time)  # exact at a constant speed
+        return replace(self, times=_distinct([*self.times, *found]))
+
+
+def experiments(case: AnyCase, measurements: Sequence[Measurement]) -> list[Experiment]:
+    """Experiments of a case, one for the measurements of equal conditions.
+
+    Raises
+    ------
+    CaseError
+        If the conditions or the times do not fit the case.
+    """
+    tables = {key: table for key, table in as_plain(case).items() if key not in _OTHER}
+    groups: dict[tuple[str, ...], list[Measurement]] = {}
+    for one in measurements:
+        groups.setdefault(one.changes, []).append(one)
+    found = []
+    for changes, members in groups.items():
+        try:
+            own = load(tables, changes)
+        except CaseError as error:
+            names = ", ".join(one.label for one in members)
+            raise CaseError(*(f"calibrate.observations ({names}): {f}" for f in error.faults)) from None
+        found.append(_experiment(own, members))
+    return found
+
+
+def _experiment(case: AnyCase, members: list[Measurement]) -> Experiment:
+    """Experiment that ends with its last measurement, and records the faces when they were measured."""
+    tables = {key: table for key, table in as_plain(case).items() if key not in _OTHER}
+    times = [float(t) for one in members for t in one.reading.times]
+    if times and not isinstance(case.analysis, Timed):
+        raise CaseError(
+            f"calibrate.observations: {members[0].label} has times; the analysis "
+            f"{case.analysis.type} has none"
+        )
+    if isinstance(case.analysis, Timed):
+        shown = [float(t) for one in members if one.reading.places for t in one.reading.times]
+        analysis = tables["analysis"] | {"frames": 0, "output_times": [f"{t!r} s" for t in _distinct(shown)]}
+        end = case.analysis.end_time
+        if times and (end is None or max(times) > end):
+            raise CaseError(
+                f"calibrate.observations: {members[0].label} goes to {max(times):g} s; the analysis "
+                "ends before (analysis.end_time)"
+            )
+        tables = tables | {"analysis": analysis}
+    return Experiment(tables, tuple(members), _distinct(times))
+
+
+def _distinct(times: Sequence[float]) -> tuple[float, ...]:
+    return tuple(sorted({t for t in times if t > 0.0}))
+
+
+def overrides_of(table: CalibrationTable, values: np.ndarray) -> tuple[str, ...]:
+    """Changes of the case for values of the parameters, in the units of their first values."""
+    named = {name: float(value) for name, value in zip(table.parameters, values, strict=True)}
+    return table.overrides(named)

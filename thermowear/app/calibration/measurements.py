@@ -1,0 +1,180 @@
+"""Measured data from CSV files, with their uncertainty and what they correspond to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...case import AnyCase
+from ...case.studies.calibration import ObservationTable
+from ...case.values.csv_columns import Columns, column_names, read_columns
+from ...case.values.units import parse
+from ...errors import CaseError
+from ..batch.variants import written
+from .readings import PLACES, Reading, known_quantities, reading
+
+_AT = {**dict.fromkeys(PLACES, "mm"), "time": "s", "sliding_distance": "m", "cycle": ""}
+"""Columns of times and places, with a suitable unit."""
+_DEVIATION = "deviation"
+_MASS = {f"worn_mass_{k}": "g" for k in (1, 2)}
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """Values of one quantity, measured in one experiment.
+
+    Attributes
+    ----------
+    label : str
+        Name of the observation, with the quantity where a file has several.
+    reading : Reading
+    values, deviations : ndarray, shape (n,)
+        Values and standard deviations [SI]; values are NaN where only a measurement is planned.
+    changes : tuple of str
+        Keys of the case that had other values, as ``KEY=VALUE``.
+    file : str
+    """
+
+    label: str
+    reading: Reading
+    values: np.ndarray
+    deviations: np.ndarray
+    changes: tuple[str, ...]
+    file: str
+
+
+def read_measurements(
+    case: AnyCase, files: dict[str, Path], planned: bool = False
+) -> list[Measurement]:
+    """Read all measurements of a calibration.
+
+    Parameters
+    ----------
+    case : AnyCase
+        Case with the table ``calibrate``.
+    files : dict of str to Path
+        Files by the name of the observation; those not named in the case are observations, too.
+    planned : bool
+        Without values: only what would be measured, and how precisely.
+
+    Raises
+    ------
+    CaseError
+        One line for the first fault.
+    """
+    table = case.calibrate
+    assert table is not None
+    tables = table.observations | {
+        name: ObservationTable() for name in files if name not in table.observations
+    }
+    if not tables:
+        raise CaseError("calibrate.observations: missing; give a file by --data FILE")
+    found: list[Measurement] = []
+    for name, own in tables.items():
+        path = files.get(name) or (None if own.file is None else Path(own.file))
+        if path is None:
+            raise CaseError(f"calibrate.observations.{name}.file: missing; or --data {name}=FILE")
+        found += _of_file(case, name, own, path, planned)
+    return found
+
+
+def _of_file(
+    case: AnyCase, name: str, own: ObservationTable, path: Path, planned: bool
+) -> list[Measurement]:
+    try:
+        names = [n for n in column_names(path) if n not in _AT and n != _DEVIATION]
+        quantities = list(dict.fromkeys(n.removesuffix(f"_{_DEVIATION}") for n in names))
+        if not quantities:
+            raise ValueError(f"{path.name} has no column of a measured quantity")
+        columns = read_columns(path, _known_units(case, own, quantities), ordered=False)
+        if not planned and (missing := [q for q in quantities if q not in columns.values]):
+            raise ValueError(f"{columns.name} has no column {missing[0]}")
+        return [_measurement(case, name, own, columns, q, len(quantities)) for q in quantities]
+    except ValueError as error:
+        raise CaseError(f"calibrate.observations.{name}: {error}") from None
+
+
+def _known_units(case: AnyCase, own: ObservationTable, columns: list[str]) -> dict[str, str]:
+    """Columns that a file may have, with a suitable unit each."""
+    known = {name: one.si for name, one in known_quantities().items() if name not in _AT} | _MASS
+    known |= dict.fromkeys(probes_of(case), "degC")
+    if own.quantity is not None:
+        if own.quantity not in known:
+            raise ValueError(f"quantity: {own.quantity} is unknown; see docs/results.md")
+        known["value"] = known[own.quantity]
+    known |= {f"{name}_{_DEVIATION}": unit for name, unit in known.items()}
+    if len(columns) == 1 and columns[0] in known:
+        known[_DEVIATION] = known[columns[0]]
+    return _AT | known
+
+
+def probes_of(case: AnyCase) -> list[str]:
+    """Names of the points of the bodies at which temperatures are recorded."""
+    return list(getattr(case, "probes", {}))
+
+
+def _measurement(
+    case: AnyCase, name: str, own: ObservationTable, columns: Columns, column: str, several: int
+) -> Measurement:
+    quantity = own.quantity or column if column == "value" else column
+    at = {key: _in_si(columns.values[key]) for key in columns.values if key in _AT}
+    count = len(columns.lines)
+    given = reading(quantity, at, count, own.contact, _densities(case))
+    values = np.full(count, np.nan)
+    if column in columns.values:
+        values = _in_si(columns.values[column])
+    label = f"{name}: {quantity}" if several > 1 else name
+    deviations = _deviations(columns, column, values, own)
+    changes = tuple(f"{key}={written(value)}" for key, value in own.set.items())
+    return Measurement(label, given, values, deviations, changes, columns.name)
+
+
+def _deviations(
+    columns: Columns, column: str, values: np.ndarray, own: ObservationTable
+) -> np.ndarray:
+    """Standard deviations: those of a column, or the common one of the case [SI]."""
+    for key in (f"{column}_{_DEVIATION}", _DEVIATION):
+        if key in columns.values:
+            found = _in_si(columns.values[key], difference=True)
+            break
+    else:
+        if own.deviation is None:
+            raise ValueError(
+                f"{columns.name} has no column {_DEVIATION}; give one, or the key deviation"
+            )
+        if own.deviation.absolute is not None:
+            found = np.full(len(values), _in_si([own.deviation.written()], difference=True)[0])
+        else:
+            assert own.deviation.relative is not None
+            found = own.deviation.relative * np.abs(values)
+    if not (found > 0.0).all():
+        raise ValueError(f"{columns.name}: the {_DEVIATION} of {column} must be greater than 0")
+    return found
+
+
+def _in_si(values: Sequence[str | float], difference: bool = False) -> np.ndarray:
+    """Numbers in SI; of a difference without the offset of a temperature scale."""
+
+    def number(value: str | float) -> float:
+        if not isinstance(value, str):
+            return value
+        base = float(parse(value, "1 m").to_base_units().magnitude)
+        if difference:
+            unit = value.partition(" ")[2]
+            base -= float(parse(f"0 {unit}", "1 m").to_base_units().magnitude)
+        return base
+
+    return np.array([number(value) for value in values])
+
+
+def _densities(case: AnyCase) -> dict[int, float]:
+    """Densities of the bodies by number, where they have one [kg/m³]."""
+    found = {}
+    for number, body in enumerate(case.geometry.bodies, 1):
+        density = case.located_material(body)[1].density
+        if density is not None:
+            found[number] = density
+    return found

@@ -1,0 +1,229 @@
+"""What a measurement corresponds to in the results of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator, PchipInterpolator
+
+from ...errors import CaseError, ComputationError
+from ...results import Result
+from ...results.points import InterfaceFields, part_of
+from ...results.quantity import TABLES, Quantity, split_key, table_of
+from ...results.summary_keys import of_key
+
+ALONG = ("time", "sliding_distance", "cycle")
+"""Columns that rows of a history are found by."""
+PLACES = ("x", "y", "z", "s")
+"""Columns that points of a contact are found by."""
+_ROWS = ("history", "heat", "cycles", "loads", "contacts", "probes")
+"""Tables of rows, in the order in which a quantity is looked for."""
+_DENSITY = "density"
+_MASSES = {f"worn_mass_{k}": (f"wear_volume_{k}", k) for k in (1, 2)}
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Quantity of the results at given times or places.
+
+    Attributes
+    ----------
+    quantity : Quantity
+        Name, label and unit.
+    at : dict of str to ndarray
+        Times, distances, cycles or coordinates [SI] by the name of their column; empty for a number
+        of the summary.
+    contact : str or None
+        Contact of a model of several bodies.
+    factor : float
+        Number that the quantity of the results is multiplied by, such as the density.
+    count : int
+        Number of values.
+    """
+
+    quantity: Quantity
+    name: str
+    count: int
+    at: dict[str, np.ndarray] = field(default_factory=dict)
+    contact: str | None = None
+    factor: float = 1.0
+
+    @property
+    def times(self) -> np.ndarray:
+        """Times at which results are needed [s]."""
+        return self.at.get("time", np.zeros(0))
+
+    @property
+    def places(self) -> dict[str, np.ndarray]:
+        """Coordinates of points of the contact [m]."""
+        return {name: self.at[name] for name in PLACES if name in self.at}
+
+    def of(self, result: Result) -> np.ndarray:
+        """Values in a result, shape (count,) [SI].
+
+        Raises
+        ------
+        CaseError
+            If the results do not have the quantity there.
+        """
+        if self.places:
+            values = self._at_places(result)
+        elif self.at:
+            values = self._in_rows(result)
+        else:
+            values = np.full(self.count, self._in_summary(result))
+        if not np.isfinite(values).all():
+            raise CaseError(f"{self.name}: has no value in the results of this case")
+        return self.factor * values
+
+    def _in_summary(self, result: Result) -> float:
+        numbers = summary_numbers(result.summary)
+        if self.name in numbers:
+            return numbers[self.name]
+        known = ", ".join(sorted(numbers))
+        raise CaseError(f"{self.name}: is not in the summary of this case; known: {known}")
+
+    def _in_rows(self, result: Result) -> np.ndarray:
+        """Values between the rows of a table, by a shape-preserving cubic."""
+        (along, wanted) = next(iter(self.at.items()))
+        name, contact = self.name, self.contact
+        if name in result.summary.get("probes", {}):
+            name, contact = "temperature", name
+        tables = result.tables()
+        for stem in _ROWS:
+            columns = TABLES[stem].columns if stem in TABLES else {}
+            if stem in tables and {name, along} <= columns.keys():
+                rows = _of_part(tables[stem], contact, result)
+                x, values = (np.array([getattr(r, n) for r in rows]) for n in (along, name))
+                return _between(x, values, wanted, along)
+        raise CaseError(
+            f"{self.name}: no table of this analysis has it by {along}; see docs/results.md"
+        )
+
+    def _at_places(self, result: Result) -> np.ndarray:
+        """Values between the points of the contact at the times of the reading, or at the end."""
+        found = np.empty(self.count)
+        times = self.times if len(self.times) else np.full(self.count, np.nan)
+        for time in np.unique(times):
+            chosen = (times == time) | (np.isnan(times) & np.isnan(time))
+            fields = self._interface(result, float(time))
+            places = {name: values[chosen] for name, values in self.places.items()}
+            found[chosen] = _on_face(fields, self.name, places)
+        return found
+
+    def _interface(self, result: Result, time: float) -> InterfaceFields:
+        fields = result.interface
+        if not np.isnan(time) and result.outputs:
+            near = min(result.outputs, key=lambda one: abs(one - time))
+            end = result.summary.get("time_s", np.inf)
+            if abs(near - time) < abs(end - time):
+                fields = result.outputs[near]
+        if not result.contacts:
+            return fields
+        if self.contact not in result.contacts:
+            names = ", ".join(result.contacts)
+            raise CaseError(f"{self.name}: needs the contact; one of: {names}")
+        return part_of(fields, result.contacts[self.contact])
+
+
+def summary_numbers(summary: dict[str, Any], above: str = "") -> dict[str, float]:
+    """Numbers of a summary by name without unit, those in tables by their path."""
+    found: dict[str, float] = {}
+    for key, value in summary.items():
+        if isinstance(value, dict):
+            found |= summary_numbers(value, f"{above}{key}.")
+        elif isinstance(value, int | float) and not isinstance(value, bool):
+            found[above + "_".join(split_key(key)[0].split())] = float(value)
+    return found
+
+
+def known_quantities() -> dict[str, Quantity]:
+    """Quantities of all tables and of the summary, by name."""
+    found: dict[str, Quantity] = {}
+    for table in TABLES.values():
+        for name, quantity in table.columns.items():
+            found.setdefault(name, quantity)
+    from ...results.summary_keys import GROUPS
+
+    for group in GROUPS.values():
+        for quantity in group:
+            found.setdefault("_".join(split_key(quantity.header)[0].split()), quantity)
+    return found
+
+
+def _of_part(rows: list, contact: str | None, result: Result) -> list:
+    """Rows of one contact or probe, in tables that have several."""
+    numbered = next((n for n in ("contact", "probe") if hasattr(rows[0], n)), None)
+    if numbered is None:
+        return rows
+    names = list(result.contacts if numbered == "contact" else result.summary["probes"])
+    if contact not in names:
+        raise CaseError(f"needs the {numbered}; one of: {', '.join(names)}")
+    return [row for row in rows if getattr(row, numbered) == names.index(contact) + 1]
+
+
+def _between(x: np.ndarray, values: np.ndarray, wanted: np.ndarray, along: str) -> np.ndarray:
+    x, first = np.unique(x, return_index=True)
+    margin = 1e-9 * max(abs(x[-1]), 1e-300)
+    if wanted.min() < x[0] - margin or wanted.max() > x[-1] + margin:
+        raise ComputationError(
+            f"the run covers {along} from {x[0]:g} to {x[-1]:g}; the data go from "
+            f"{wanted.min():g} to {wanted.max():g}"
+        )
+    if len(x) == 1:
+        return np.full(len(wanted), values[first][0])
+    return PchipInterpolator(x, values[first])(np.clip(wanted, x[0], x[-1]))
+
+
+def _on_face(fields: InterfaceFields, name: str, places: dict[str, np.ndarray]) -> np.ndarray:
+    """Values of a field at points of the contact face."""
+    if name not in table_of(fields).columns:
+        raise CaseError(f"{name}: is no quantity of interface.csv; see docs/results.md")
+    values = getattr(fields, name)
+    at = np.stack([getattr(fields, place) for place in places], axis=1)
+    wanted = np.stack(list(places.values()), axis=1)
+    for k, place in enumerate(places):
+        margin = 0.02 * np.ptp(at[:, k]) + 1e-12
+        low, high = at[:, k].min() - margin, at[:, k].max() + margin
+        if wanted[:, k].min() < low or wanted[:, k].max() > high:
+            raise CaseError(
+                f"{name}: {place} from {wanted[:, k].min():g} to {wanted[:, k].max():g} m lies "
+                f"outside the contact face ({at[:, k].min():g} to {at[:, k].max():g} m)"
+            )
+    if len(places) == 1:
+        x, first = np.unique(at[:, 0], return_index=True)
+        return PchipInterpolator(x, values[first], extrapolate=True)(wanted[:, 0])
+    inside = LinearNDInterpolator(at, values)(wanted)
+    return np.where(np.isnan(inside), NearestNDInterpolator(at, values)(wanted), inside)
+
+
+def reading(
+    name: str, at: dict[str, np.ndarray], count: int, contact: str | None, densities: dict[int, float]
+) -> Reading:
+    """Reading of a quantity by its name in the results.
+
+    Parameters
+    ----------
+    name : str
+        Name of a column, of a number of the summary, of a probe, or ``worn_mass_1``.
+    at : dict of str to ndarray
+    count : int
+    contact : str or None
+    densities : dict of int to float
+        Density of the worn body by its number [kg/m³].
+
+    Raises
+    ------
+    CaseError
+    """
+    if name in _MASSES:
+        volume, body = _MASSES[name]
+        if body not in densities:
+            raise CaseError(f"{name}: needs the density of the body")
+        mass = Quantity(f"{name}_kg", f"worn mass, body {body}", "kg", "kg")
+        return Reading(mass, volume, count, at, contact, densities[body])
+    known = known_quantities()
+    quantity = known.get(name) or (known.get("temperature_1") if at else None) or of_key(name)
+    return Reading(quantity, name, count, at, contact)

@@ -1,0 +1,1 @@
+"""Tables of calibrations and studies: parameters, observations, distributions of inputs."""

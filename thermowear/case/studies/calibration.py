@@ -1,0 +1,173 @@
+"""Table ``calibrate``: parameters to be found from observations."""
+
+from __future__ import annotations
+
+import re
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, model_validator
+
+from ..values.percentages import Percentage
+from ..values.section import KeyFault, Number, Section, UserFile
+from .scalars import ScalarKey, SpreadKey
+
+_NAME = re.compile(r"[^\W\d]\w*")
+_IN_BRACES = re.compile(r"\{([^{}]*)\}")
+
+
+class PriorTable(Section):
+    """Normal prior of a parameter, of its logarithm on a logarithmic scale."""
+
+    value: ScalarKey
+    deviation: SpreadKey
+
+
+class ParameterTable(Section):
+    """Parameter to be found.
+
+    Attributes
+    ----------
+    key : str or None
+        Path of the key of the case that has its value; None if `CalibrationTable.set` uses it.
+    start, lower, upper : Scalar
+        First value, and bounds.
+    scale : str
+        ``"log"`` for parameters that are uncertain by a factor.
+    prior : PriorTable or None
+    """
+
+    key: str | None = None
+    start: ScalarKey
+    lower: ScalarKey
+    upper: ScalarKey
+    scale: Literal["linear", "log"] = "linear"
+    prior: PriorTable | None = None
+
+    @model_validator(mode="after")
+    def _in_one_unit(self):
+        try:
+            low, high = (bound.in_unit_of(self.start) for bound in (self.lower, self.upper))
+        except ValueError as error:
+            raise KeyFault("upper", f"{error}, the unit of start") from None
+        if not low < high:
+            raise KeyFault("upper", "must be greater than lower")
+        if not low <= self.start.number <= high:
+            raise KeyFault("start", "must lie between lower and upper")
+        if self.scale == "log" and not low > 0.0:
+            raise KeyFault("lower", "must be greater than 0 on a logarithmic scale")
+        if self.prior is not None:
+            self._check_prior(self.prior)
+        return self
+
+    def _check_prior(self, prior: PriorTable) -> None:
+        try:
+            mean = prior.value.in_unit_of(self.start)
+            prior.deviation.of(self.start)
+        except ValueError as error:
+            raise KeyFault("prior", f"{error}, the unit of start") from None
+        if self.scale == "log" and not mean > 0.0:
+            raise KeyFault("prior.value", "must be greater than 0 on a logarithmic scale")
+
+
+class ObservationTable(Section):
+    """Measured data and what they correspond to.
+
+    Attributes
+    ----------
+    file : str or None
+        CSV file; None if the command names it (``--data NAME=FILE``).
+    quantity : str or None
+        Name of the quantity in the results; by default the name of the column.
+    contact : str or None
+        Contact of a model of several bodies.
+    deviation : Spread or None
+        Standard deviation where the file has no column for it.
+    set : dict
+        Keys of the case that had other values in this measurement.
+    """
+
+    file: UserFile | None = None
+    quantity: str | None = None
+    contact: str | None = None
+    deviation: SpreadKey | None = None
+    set: dict[str, Any] = {}
+
+
+class PosteriorTable(Section):
+    """Sampling of the posterior distribution by an ensemble sampler.
+
+    Attributes
+    ----------
+    walkers : int or None
+        Number of walkers, even; by default four for each parameter, at least 16.
+    steps : int
+        Steps of each walker.
+    seed : int
+    """
+
+    walkers: Annotated[int, Field(ge=4, le=1000, multiple_of=2, strict=True)] | None = None
+    steps: Annotated[int, Field(ge=10, le=100_000, strict=True)] = 1000
+    seed: Annotated[int, Field(ge=0, strict=True)] = 1
+
+
+class CalibrationTable(Section):
+    """Calibration of parameters.
+
+    Attributes
+    ----------
+    parameters : dict of str to ParameterTable
+        Parameters by short names.
+    set : dict of str to str
+        Values of further keys, with names of parameters in braces: ``"{k} 1/MPa^{b}"``.
+    observations : dict of str to ObservationTable
+    deviations : str
+        ``"known"``, or ``"estimated"`` from the scatter: those given are then relative weights.
+    tolerance : float
+        Relative change of the parameters and of the sum of squares at which the search ends.
+    max_evaluations : int
+    confidence : float
+        Level of the intervals.
+    posterior : PosteriorTable or None
+    """
+
+    parameters: Annotated[dict[str, ParameterTable], Field(min_length=1)]
+    set: dict[str, str] = {}
+    observations: dict[str, ObservationTable] = {}
+    deviations: Literal["known", "estimated"] = "known"
+    tolerance: Annotated[Number, Field(gt=0.0, le=1e-2)] = 1e-8
+    max_evaluations: Annotated[int, Field(ge=1, le=100_000, strict=True)] = 100
+    confidence: Percentage = 0.95
+    posterior: PosteriorTable | None = None
+
+    @model_validator(mode="after")
+    def _parameters_are_used(self):
+        used = {name for text in self.set.values() for name in _IN_BRACES.findall(text)}
+        for name, parameter in self.parameters.items():
+            if not _NAME.fullmatch(name):
+                text = 'must be a short name, such as k; its key is given by key = "wear.…"'
+                raise KeyFault(f"parameters.{name}", text)
+            if parameter.key is None and name not in used:
+                text = "missing; or use the parameter in calibrate.set"
+                raise KeyFault(f"parameters.{name}.key", text)
+        for key, text in self.set.items():
+            unknown = sorted(set(_IN_BRACES.findall(text)) - self.parameters.keys())
+            if unknown:
+                raise KeyFault(f"set.{key}", f"{{{unknown[0]}}} is not a parameter")
+        keys = [*self.set, *(p.key for p in self.parameters.values() if p.key is not None)]
+        twice = [key for key in keys if keys.count(key) > 1]
+        if twice:
+            raise KeyFault("set", f"{twice[0]} is set twice")
+        return self
+
+    def overrides(self, values: dict[str, float]) -> tuple[str, ...]:
+        """Changes ``KEY=VALUE`` of the case for values of the parameters, in the units of start."""
+        found = []
+        for name, table in self.parameters.items():
+            if table.key is not None:
+                number, unit = values[name], table.start.unit
+                found.append(f'{table.key}="{number!r} {unit}"' if unit else f"{table.key}={number!r}")
+        for key, text in self.set.items():
+            filled = _IN_BRACES.sub(lambda m: repr(values[m[1]]), text)
+            bare = _IN_BRACES.fullmatch(text) is not None
+            found.append(f"{key}={filled}" if bare else f'{key}="{filled}"')
+        return tuple(found)

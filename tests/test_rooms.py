@@ -18,6 +18,7 @@ ORDER = [
     "laws",
     "case",
     "reference",
+    "inference",
     "geometry",
     "bulk",
     "contact",
@@ -35,6 +36,10 @@ NOT_ALLOWED = {
     "laws": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix", "pydantic", "pint"},
     "model": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "pydantic", "pint"},
     "reference": {"dolfinx", "gmsh", "petsc4py", "mpi4py", "ufl", "pydantic", "pint"},
+    "inference": {
+        *("dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix"),
+        *("pydantic", "pint", "matplotlib"),
+    },
     "geometry": {"dolfinx", "petsc4py", "mpi4py", "ufl"},
     "results": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix", "matplotlib"},
     "output": {"dolfinx", "petsc4py", "ufl", "basix", "gmsh"},
@@ -43,6 +48,7 @@ NOT_ALLOWED = {
 BARE = {
     "output": {"simulation", "verification", "contact", "bulk", "laws", "model"},
     "reference": {"case"},
+    "inference": {"laws", "case", "reference"},
     "results": {"laws", "case", "reference", "geometry", "bulk", "contact", "model"},
     "bulk": {"case", "geometry"},
     "contact": {"case", "geometry"},

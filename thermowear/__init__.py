@@ -26,6 +26,7 @@ _ROOMS = (
     "case",
     "contact",
     "geometry",
+    "inference",
     "laws",
     "model",
     "output",

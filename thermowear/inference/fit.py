@@ -1,0 +1,235 @@
+"""Bounded weighted least squares with normal errors and priors.
+
+The weighted residuals of observations and priors are minimised in internal coordinates by a trust
+region reflective method (Branch, Coleman and Li, SIAM J. Sci. Comput. 21 (1999) 1; scipy). Only
+predictions and finite differences of them are needed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from scipy import stats
+from scipy.optimize import least_squares
+
+from ..errors import ComputationError
+from .forward import ForwardModel
+from .jacobian import NOISE, central_jacobian, forward_jacobian
+from .joint_normal import JointNormal
+from .observations import Observations
+from .parameters import ParameterSpace
+
+_AT_BOUND = 1e-3  # distance to a bound relative to the distance of both
+_ENDINGS = {
+    0: "not converged: the largest number of evaluations was reached",
+    1: "converged: the gradient is small",
+    2: "converged: the sum of squares does not change any more",
+    3: "converged: the parameters do not change any more",
+    4: "converged: neither the sum of squares nor the parameters change any more",
+}
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Parameters that fit observations best, and their uncertainty.
+
+    Attributes
+    ----------
+    space : ParameterSpace
+    observations : Observations
+    internal : ndarray, shape (p,)
+        Internal coordinates of the optimum.
+    predicted : ndarray, shape (n,)
+        Predictions there.
+    jacobian : ndarray, shape (n, p)
+        Derivatives of the weighted residuals with respect to the internal coordinates.
+    converged : bool
+    message : str
+        Reason for the end of the iteration.
+    evaluations : int
+        Number of predictions, without those for derivatives.
+    noise : float
+        Relative noise of the derivatives, by which directions count as undetermined.
+    """
+
+    space: ParameterSpace
+    observations: Observations
+    internal: np.ndarray
+    predicted: np.ndarray
+    jacobian: np.ndarray
+    converged: bool = True
+    message: str = ""
+    evaluations: int = 0
+    noise: float = NOISE
+
+    @property
+    def values(self) -> np.ndarray:
+        """Values of the parameters, shape (p,)."""
+        return self.space.admissible(self.internal)
+
+    @property
+    def residuals(self) -> np.ndarray:
+        """Weighted residuals of the observations, shape (n,)."""
+        return self.observations.residuals(self.predicted)
+
+    @cached_property
+    def uncertainty(self) -> JointNormal:
+        """Distribution of the parameters for known deviations of the observations."""
+        return JointNormal.from_jacobian(self.space, self.internal, self.jacobian, self.noise)
+
+    @cached_property
+    def scattered(self) -> JointNormal:
+        """Distribution for deviations known but for a common factor, by Student's t.
+
+        The factor is estimated by the scatter of the residuals. Priors do not count as residuals.
+        """
+        free = len(self.observations) - self.determined
+        if free <= 0:
+            raise ValueError(
+                f"{len(self.observations)} observations determine {self.determined} parameters: "
+                "none is left to estimate the scatter"
+            )
+        factor = np.sqrt(np.sum(self.residuals**2) / free) or np.finfo(float).tiny
+        rows = self.jacobian / factor
+        return JointNormal.from_jacobian(self.space, self.internal, rows, self.noise, free)
+
+    @property
+    def determined(self) -> int:
+        """Number of independent combinations of the parameters that are determined."""
+        return self.uncertainty.factor.shape[1]
+
+    @property
+    def chi2(self) -> float:
+        """Sum of squares of the weighted residuals of observations and priors."""
+        priors = self.space.prior_residuals(self.internal)
+        return float(np.sum(self.residuals**2) + np.sum(priors**2))
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Number of observations and priors less the number of determined parameters."""
+        return len(self.observations) + len(self.space.prior_jacobian) - self.determined
+
+    @property
+    def reduced_chi2(self) -> float:
+        """Sum of squares per degree of freedom; NaN without any."""
+        return self.chi2 / self.degrees_of_freedom if self.degrees_of_freedom else np.nan
+
+    @property
+    def p_value(self) -> float:
+        """Probability of a larger sum of squares if model and deviations are correct."""
+        free = self.degrees_of_freedom
+        return float(stats.chi2.sf(self.chi2, free)) if free else np.nan
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Covariance of the internal coordinates, shape (p, p), see `JointNormal`."""
+        return self.uncertainty.covariance
+
+    @property
+    def correlation(self) -> np.ndarray:
+        """Correlation of the internal coordinates, shape (p, p)."""
+        return self.uncertainty.correlation
+
+    @property
+    def standard_errors(self) -> np.ndarray:
+        """Standard errors, relative ones of logarithmic parameters, shape (p,)."""
+        return self.uncertainty.standard_errors
+
+    def intervals(self, level: float = 0.95) -> np.ndarray:
+        """Intervals of the values for known deviations, shape (p, 2)."""
+        return self.uncertainty.intervals(level)
+
+    @property
+    def at_bounds(self) -> tuple[str, ...]:
+        """Names of parameters that a bound keeps from fitting better."""
+        slope = self.jacobian.T @ self.residuals
+        slope += self.space.prior_jacobian.T @ self.space.prior_residuals(self.internal)
+        (lower, upper), near = self.space.bounds, _AT_BOUND * self.space.widths
+        held = (self.internal - lower < near) & (slope > 0)
+        held |= (upper - self.internal < near) & (slope < 0)
+        return tuple(name for name, at in zip(self.space.names, held, strict=True) if at)
+
+
+def fit(
+    space: ParameterSpace,
+    observations: Observations,
+    model: ForwardModel,
+    tolerance: float = 1e-8,
+    max_evaluations: int = 100,
+    noise: float = NOISE,
+) -> Fit:
+    """Fit parameters to observations.
+
+    Parameters
+    ----------
+    tolerance : float
+        Relative change of the sum of squares and of the parameters at which the iteration ends.
+    max_evaluations : int
+        Largest number of predictions, without those for derivatives.
+    noise : float
+        Relative noise of the derivatives.
+
+    Raises
+    ------
+    ComputationError
+        If predictions at the start, or beside an accepted point, cannot be computed.
+    """
+    problem = _LeastSquares(space, observations, model)
+    start = space.internal(space.start)
+    if not np.isfinite(problem.residuals(start)).all():
+        raise ComputationError("the predictions at the start of the fit could not be computed")
+    found = least_squares(
+        problem.residuals,
+        start,
+        jac=problem.jacobian,
+        bounds=space.bounds,
+        method="trf",
+        ftol=tolerance,
+        xtol=tolerance,
+        gtol=tolerance,
+        max_nfev=max_evaluations,
+    )
+    predicted = problem.predicted(found.x)
+    jacobian = central_jacobian(space, model, found.x, predicted)
+    return Fit(
+        space,
+        observations,
+        found.x,
+        predicted,
+        jacobian / observations.deviations[:, None],
+        found.status > 0,
+        _ENDINGS[found.status],
+        len(problem.known),
+        noise,
+    )
+
+
+@dataclass(frozen=True)
+class _LeastSquares:
+    """Residuals and Jacobian of a fit; each point is predicted once."""
+
+    space: ParameterSpace
+    observations: Observations
+    model: ForwardModel
+    known: dict[bytes, np.ndarray] = field(default_factory=dict)
+
+    def predicted(self, internal: np.ndarray) -> np.ndarray:
+        key = internal.tobytes()
+        if key not in self.known:
+            predicted = self.model.predict(self.space.admissible(internal))
+            self.known[key] = np.asarray(predicted, dtype=float)
+        return self.known[key]
+
+    def residuals(self, internal: np.ndarray) -> np.ndarray:
+        """Weighted residuals of observations and priors, shape (n + m,)."""
+        observed = self.observations.residuals(self.predicted(internal))
+        return np.concatenate([observed, self.space.prior_residuals(internal)])
+
+    def jacobian(self, internal: np.ndarray) -> np.ndarray:
+        """Derivatives of the residuals, shape (n + m, p)."""
+        predicted = self.predicted(internal)
+        rows = forward_jacobian(self.space, self.model, internal, predicted)
+        rows = rows / self.observations.deviations[:, None]
+        return np.concatenate([rows, self.space.prior_jacobian])

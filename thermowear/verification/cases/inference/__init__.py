@@ -1,0 +1,1 @@
+"""Inference from measurements and sensitivity analysis, against closed forms."""

@@ -24,7 +24,8 @@ from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from ..time.time_loop import AnySize, FewSizes, Moment, times_to_hit
+from ..time.step_sizes import AnySize, FewSizes
+from ..time.time_loop import Moment, times_to_hit
 from .static import wear_velocity
 
 _MELTED = 5000.0  # K, above the melting point of any solid

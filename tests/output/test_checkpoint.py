@@ -159,7 +159,7 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
 def test_a_table_begins_with_known_rows_and_ends_with_a_whole_one(tmp_path):
     """requirement: an incomplete row is ignored."""
     path = tmp_path / "history.csv"
-    rows = [HistoryRow(*np.full(10, value).tolist()) for value in (1.0, 2.0, 3.0)]
+    rows = [HistoryRow(*np.full(15, value).tolist()) for value in (1.0, 2.0, 3.0)]
     path.write_text("what a run that was killed has left", "utf-8")
     RowWriter(tmp_path, table_of(HistoryRow), rows[:2]).add(rows[2])
     with path.open("a") as file:

@@ -9,7 +9,7 @@ from thermowear.results import HistoryRow
 
 
 def row(time):
-    return HistoryRow(time, 1.0, 2e6, 0.1, 0.0, 0.0, 300.0, 0.0, 0.1, 1e-5)
+    return HistoryRow(time, 1.0, 2e6, 0.1, 0.0, 0.0, 300.0, 0.0, 0.1, 1e-5, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def shown(terminal):

@@ -147,12 +147,12 @@ def test_every_step_is_on_disk_at_once(tmp_path):
     requirement: results can be read during the run.
     """
     folder = opened(tmp_path)
-    first = HistoryRow(*(0.1 * n for n in range(1, 11)))
-    second = HistoryRow(*(math.pi * n for n in range(1, 10)), error=math.nan)
+    first = HistoryRow(*(0.1 * n for n in range(1, 16)))
+    second = HistoryRow(*(math.pi * n for n in range(1, 15)), friction_torque=math.nan)
     for count, row in enumerate((first, second), start=1):
         folder.add(row)
         table = read(tmp_path / "history.csv")
-        assert [len(column) for column in table.values()] == [count] * 10
+        assert [len(column) for column in table.values()] == [count] * 15
         for name, column in table.items():
             assert column[-1] == pytest.approx(getattr(row, name), rel=1e-14, nan_ok=True)
 

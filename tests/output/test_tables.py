@@ -44,7 +44,8 @@ def test_columns_are_those_of_the_contract(folder):
     head = (folder / "history.csv").read_text().splitlines()[0]
     assert head == (
         "time_s,sliding_distance_m,max_pressure_Pa,contact_area_m2,wear_volume_1_m3,"
-        "wear_volume_2_m3,max_temperature_K,approach_m,step_s,error"
+        "wear_volume_2_m3,max_temperature_K,approach_m,step_s,error,max_wear_1_m,max_wear_2_m,"
+        "friction_power_W,friction_force_N,friction_torque_Nm"
     )
 
 
@@ -142,7 +143,7 @@ def test_columns_of_other_versions(tmp_path):
 def test_a_row_that_the_disk_does_not_take_leaves_no_trace(tmp_path):
     """requirement: tables remain valid on a full disk, and continue afterwards."""
     path = tmp_path / "history.csv"
-    rows = [HistoryRow(*np.full(10, value).tolist()) for value in (1 / 3, 2 / 3, 4 / 3)]
+    rows = [HistoryRow(*np.full(15, value).tolist()) for value in (1 / 3, 2 / 3, 4 / 3)]
     writer = tables.RowWriter(tmp_path, table_of(HistoryRow), rows[:1])
     whole = path.read_bytes()
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)

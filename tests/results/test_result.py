@@ -20,7 +20,7 @@ INTERFACE = TABLES["interface"].columns
 def result():
     columns = {name: np.linspace(0.0, 1.0, 3) + k for k, name in enumerate(INTERFACE)}
     profile = Profile(*np.arange(33.0).reshape(11, 3))
-    rows = [HistoryRow(*np.arange(10.0) + k) for k in range(2)]
+    rows = [HistoryRow(*np.arange(15.0) + k) for k in range(2)]
     return Result(InterfaceFields(**columns), profile, {}, rows)
 
 

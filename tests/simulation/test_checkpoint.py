@@ -145,7 +145,7 @@ def test_an_analysis_goes_on_bitwise(case, overrides):
 def test_states_are_unpacked_as_they_were():
     """requirement: kinds, bits, order in memory; equal numbers are not enough for equal sums."""
     face = np.asfortranarray(np.random.default_rng(0).random((3, 4)))
-    row = HistoryRow(0.1, 2.0, *np.arange(8.0).tolist())
+    row = HistoryRow(0.1, 2.0, *np.arange(13.0).tolist())
     state = {
         0.1: (face, np.float64(1 / 3), None),
         "b": [True, -0.0, float("nan"), 7, np.array([False, True])],

@@ -37,7 +37,7 @@ class Counting(AnalysisHistory[Tick]):
         if state.time in self.wrong:
             raise ComputationError("not balanced")
         self.passed += 1
-        return [HistoryRow(state.time, *np.zeros(9))]
+        return [HistoryRow(state.time, *np.zeros(14))]
 
     def may_restart(self, state):
         return state.time % 2 == 0

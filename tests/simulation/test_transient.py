@@ -8,8 +8,9 @@ import pytest
 
 import thermowear as tw
 from thermowear.reference import annular_punch as reference
-from thermowear.simulation.interface.sdirk import TrialStep, next_step
+from thermowear.simulation.interface.sdirk import TrialStep
 from thermowear.simulation.time import time_loop as transient
+from thermowear.simulation.time.step_sizes import next_step
 
 from ..conftest import COLD_RUNNING_IN, HOT, cold_tables, wear_law
 from ..systems import built

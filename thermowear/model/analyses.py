@@ -94,6 +94,12 @@ class TimedAnalysis(SteppedAnalysis):
         ``"steady"``: stop when the steady state is reached within `steady_tolerance`.
     steady_tolerance : float
     max_steps : int
+        Limit of the number of steps with error control.
+    steps : tuple of float
+        Ends of the time steps [s], such as those of an earlier run, which are taken without error
+        control (internal numerical differentiation; Bock 1981): the results are then smooth
+        functions of the parameters. They include the output times and the kinks of the histories,
+        and their last ends the run. Empty: error control.
     """
 
     type: ClassVar[str]
@@ -102,6 +108,7 @@ class TimedAnalysis(SteppedAnalysis):
     until: Literal["steady"] | None = None
     steady_tolerance: float = 1e-3
     max_steps: int = 10_000
+    steps: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,11 @@ from .quantity import as_in, column, table
     "history", "History, one row per step", "one row per time step of a transient run", grows=True
 )
 class HistoryRow:
-    """Step of a running-in."""
+    """Step of a running-in.
+
+    In reciprocating sliding, friction power and force are means over the cycle, and the largest
+    wear depth of body 2 is that of its track. NaN: a quantity that does not exist.
+    """
 
     time: float = column("time", "s")
     sliding_distance: float = column("sliding distance", "m", meaning="at the mean speed")
@@ -20,7 +24,16 @@ class HistoryRow:
     max_temperature: float = column("highest temperature", "K", "°C")
     approach: float = column("approach", "m", "µm", "of the holder along the load direction")
     step: float = column("time step", "s")
-    error: float = column("time step error", meaning="relative")
+    error: float = column("time step error", meaning="relative; NaN for given time steps")
+    max_wear_1: float = column("largest wear depth, body 1", "m", "µm")
+    max_wear_2: float = column("largest wear depth, body 2", "m", "µm")
+    friction_power: float = column("friction power", "W", "kW")
+    friction_force: float = column(
+        "friction force", "N", meaning="integral of its magnitude; not of several bodies"
+    )
+    friction_torque: float = column(
+        "friction torque", "N m", meaning="about the axis of a rotation; not of several bodies"
+    )
 
 
 @table(
@@ -40,7 +53,7 @@ class HeatRow:
     time: float = as_in(HistoryRow)
     speed: float = column("sliding speed", "m/s")
     normal_force: float = column("normal force", "N", meaning="along the load direction")
-    friction_power: float = column("friction power", "W", "kW")
+    friction_power: float = as_in(HistoryRow)
     heat_in: float = column("heat input", "J", "kJ", "since the start")
     heat_stored: float = column("heat stored", "J", "kJ", "since the start")
     heat_lost: float = column("heat lost", "J", "kJ", "since the start")
@@ -94,8 +107,8 @@ class CycleRow:
     wear_volume_1: float = as_in(HistoryRow)
     wear_volume_2: float = as_in(HistoryRow)
     dissipated: float = column("dissipated energy", "J", "mJ", "since the start")
-    max_wear_1: float = column("largest wear depth, body 1", "m", "µm")
-    max_wear_2: float = column("largest wear depth, body 2", "m", "µm")
+    max_wear_1: float = as_in(HistoryRow)
+    max_wear_2: float = as_in(HistoryRow)
     contact_area: float = as_in(HistoryRow)
     max_pressure: float = as_in(HistoryRow)
     jump: int = column("cycle-jump length", meaning="in cycles")

@@ -19,12 +19,14 @@ from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
 from ..results.coatings import Face, WearingState, layers, times_since_worn_through
 from ..results.contact_rows import contact_rows
+from ..results.friction import Friction, friction_of
 from ..results.recording import Snapshot, snapshot_at
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from ..time.time_loop import AnySize, FewSizes, Moment, times_to_hit
+from ..time.step_sizes import AnySize, FewSizes
+from ..time.time_loop import Moment, times_to_hit
 from .static import wear_velocity
 
 _MELTED = 5000.0  # K, above the melting point of any solid
@@ -98,7 +100,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         speed = self._mean(conditions.speed)
         slid = state.step * (self._speed + speed) / 2  # steps end at kinks of the speed
         self._speed = speed
-        row = self._row(state, slid)
+        row = self._row(state, slid, conditions)
         self._note_lost_layers(conditions, state, slid, row)
         each = self._contact_rows(conditions, state)
         if problem.heat is None or not problem.stores_heat:
@@ -179,10 +181,11 @@ class TransientHistory(AnalysisHistory[Moment]):
         now = (last.max_temperature - before.max_temperature) / last.step
         return now > _STEEPER * so_far > 0.0
 
-    def _row(self, moment: Moment, slid: float) -> HistoryRow:
+    def _row(self, moment: Moment, slid: float, conditions: InterfaceConditions) -> HistoryRow:
         system, pressure, rows = self.loop.now.system, moment.state.pressure, self.table(HistoryRow)
-        depths = moment.state.by_body(system.laws) - system.moved
-        volumes = (system.worn_areas * depths).sum(axis=1) + system.lost.sum(axis=0)
+        depths, friction = moment.state.by_body(system.laws), self._friction(moment, conditions)
+        in_gap = system.worn_areas * (depths - system.moved)
+        volumes = in_gap.sum(axis=1) + system.lost.sum(axis=0)
         return HistoryRow(
             time=moment.time,
             sliding_distance=slid + (rows[-1].sliding_distance if rows else 0.0),
@@ -194,7 +197,19 @@ class TransientHistory(AnalysisHistory[Moment]):
             approach=float(system.approaches @ moment.state.contact.motion),
             step=moment.step,
             error=moment.error,
+            max_wear_1=float(depths[0].max()),
+            max_wear_2=float(depths[1].max()),
+            friction_power=friction.power,
+            friction_force=friction.force,
+            friction_torque=float("nan") if friction.torque is None else friction.torque,
         )
+
+    def _friction(self, moment: Moment, conditions: InterfaceConditions) -> Friction:
+        """Friction of a pair; of several bodies the power of all contacts."""
+        system, count = self.loop.now.system, len(self._system.model.interfaces)
+        each = [friction_of(system, k, conditions, moment.state.pressure) for k in range(count)]
+        power = sum(found.power for found in each)
+        return each[0] if self._is_pair else Friction(float("nan"), None, power)
 
     def _note_lost_layers(self, conditions, moment: Moment, slid: float, row: HistoryRow) -> None:
         """Keep the time and the sliding distance at which a face first lost all its layers."""

@@ -19,7 +19,8 @@ from ..results.recording import Snapshot, snapshot
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.system import System
-from ..time.time_loop import AnySize, Moment, moments
+from ..time.step_sizes import AnySize
+from ..time.time_loop import Moment, moments
 from .reciprocating_problem import ReciprocatingProblem
 from .stroke import positions, strokes
 
@@ -39,7 +40,7 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
 
     def rows_of(self, moment: Moment) -> list[HistoryRow | ContactRow]:
         system, state = self._system, moment.state
-        volumes = self._volumes(state.worn[0])
+        volumes, (on_1, on_2) = self._volumes(state.worn[0]), self._problem.split(state.worn)
         mean_speed = float(np.average(system.speed, weights=system.weights))
         cycle = self._problem.of_cycle(state.contact)
         row = HistoryRow(
@@ -53,6 +54,11 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
             approach=float(system.approaches @ cycle.motion),
             step=moment.step,
             error=moment.error,
+            max_wear_1=float((system.basis @ on_1).max()),
+            max_wear_2=float(on_2.max()),
+            friction_power=float(cycle.power.sum()),
+            friction_force=float(cycle.friction[0]) if system.model.is_pair else float("nan"),
+            friction_torque=float("nan"),
         )
         return [row] if system.model.is_pair else [row, *self._contact_rows(moment)]
 

@@ -141,12 +141,14 @@ class ReciprocatingProblem(WearProblem):
             terms = (
                 w * (p > 0),
                 system.force_per_pressure * p,
+                w * system.friction * p,
                 w * system.friction * p * system.speed,
             )
             rows.append([[p[k].max(), *(term[k].sum() for term in terms)] for k in own])
         largest, *means = np.moveaxis(np.array(rows, dtype=float), 2, 0)
-        area, force, power = (self._shares @ mean for mean in means)
-        return CycleContact(largest.max(axis=0), area, force, power, self._shares @ contact.motion)
+        area, force, friction, power = (self._shares @ mean for mean in means)
+        motion = self._shares @ contact.motion
+        return CycleContact(largest.max(axis=0), area, force, friction, power, motion)
 
     def first_step(self, state: InterfaceState) -> float:
         """Step in which wear is small compared with the elastic deflection of the bodies [s]."""

@@ -21,8 +21,9 @@ class CycleContact:
     ----------
     largest : ndarray, shape (n_interfaces,)
         Largest pressure [Pa].
-    area, force, power : ndarray, shape (n_interfaces,)
-        Mean contact area, normal force along the load direction and friction power [m², N, W].
+    area, force, friction, power : ndarray, shape (n_interfaces,)
+        Mean contact area, normal force along the load direction, friction force and friction power
+        [m², N, N, W].
     motion : ndarray, shape (n_modes,)
         Mean motion of the holders.
     """
@@ -30,6 +31,7 @@ class CycleContact:
     largest: np.ndarray
     area: np.ndarray
     force: np.ndarray
+    friction: np.ndarray
     power: np.ndarray
     motion: np.ndarray
 

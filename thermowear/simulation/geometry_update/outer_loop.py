@@ -24,7 +24,8 @@ from ..runtime.observer import Observer
 from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
-from ..time.time_loop import Moment, StepSizes, is_over, moments
+from ..time.step_sizes import StepSizes
+from ..time.time_loop import Moment, is_over, moments
 from .geometry_update import settled, updated
 from .moving_faces import STEPPED, MovingFaces, smoothed_wear, steps_grow
 from .thickness import thicknesses
@@ -156,8 +157,7 @@ class OuterLoop:
         self.allowed = settings.largest_kept
         self.earlier = UpdateCounts()
         self._settings, self._sizes = settings, sizes
-        self._principle = principle
-        self._observer = observer
+        self._principle, self._observer = principle, observer
         self._narrow = ""
         self._follows = bool(np.isfinite(self.allowed))
         if self._follows and steps_grow(problem.system):

@@ -1,4 +1,4 @@
-"""SDIRK step of wear with an error estimate, and step size control."""
+"""SDIRK step of wear with an error estimate."""
 
 from __future__ import annotations
 
@@ -249,8 +249,7 @@ def advance_with_error(
     # the same points for the whole step and its halves: a change of points is no time error
     state = problem.begin(state)
     whole = advance(problem, state, time, step, last=False)
-    middle = advance(problem, state, time, step / 2, last=False)
-    halves = advance(problem, middle, time + step / 2, step / 2)
+    middle, halves = _advance_halves(problem, state, time, step)
     rounding = _ROUNDING * halves.largest
     scale = max(float(halves.pressure.max()), rounding)
     errors = [
@@ -268,29 +267,22 @@ def advance_with_error(
     return TrialStep(halves, max(errors) / 3.0, *edge)
 
 
+def advance_without_error(
+    problem: WearProblem, state: InterfaceState, time: float, step: float
+) -> InterfaceState:
+    """State after the two half steps of `advance_with_error`, without the whole step."""
+    return _advance_halves(problem, problem.begin(state), time, step)[1]
+
+
+def _advance_halves(
+    problem: WearProblem, state: InterfaceState, time: float, step: float
+) -> tuple[InterfaceState, InterfaceState]:
+    """States after the first and after both half steps."""
+    middle = advance(problem, state, time, step / 2, last=False)
+    return middle, advance(problem, middle, time + step / 2, step / 2)
+
+
 def _relative(errors: np.ndarray | float, scale: float, allowed: float = 0.0) -> float:
     """Excess of the largest error over an allowed one, relative to a scale; at least 0."""
     largest = float(np.abs(errors).max(initial=0.0)) - allowed
     return largest / scale if largest > 0.0 else 0.0
-
-
-def next_step(
-    step: float, error: float, tolerance: float, former: tuple[float, float] | None = None
-) -> float:
-    """Step size expected to meet the tolerance; the error is of third order in the step.
-
-    Slower growth of the error from the former step to this one is extrapolated to the next
-    (predictive control, Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496).
-
-    Parameters
-    ----------
-    step, error, tolerance : float
-    former : tuple of float, optional
-        Size and error of the preceding step; no prediction without them.
-    """
-    if error == 0.0:
-        return 5.0 * step
-    factor = 0.9 * (tolerance / error) ** (1 / 3)
-    if former is not None and factor > 1.0:
-        factor *= max(1.0, step / former[0] * (former[1] / error) ** (1 / 3))
-    return step * float(np.clip(factor, 0.2, 5.0))

@@ -8,7 +8,6 @@ import numpy as np
 
 from ...contact.operators.pressure import contact_zones
 from ...contact.operators.rigid_motion import RigidMode, hold
-from ...contact.search.pairing import Pairing
 from ...laws.coefficients import Constant
 from ...model.conditions import Holder
 from ...model.interface import Interface
@@ -19,6 +18,7 @@ from ..system.rigid_modes import guides, loads_on
 from ..system.system import System
 from .body_balances import balances, friction_torques
 from .coatings import layer_volumes
+from .friction import friction_of
 from .recording import Snapshot, profile
 
 _GUIDES = {
@@ -101,8 +101,7 @@ def _of_interface(end: Snapshot, index: int) -> dict:
         end.contact.pressure[own],
         pairing.weights,
     )
-    sliding = not interface.motion.at_rest  # at rest there is no friction
-    friction = sliding * at.friction[own] * p
+    friction = friction_of(system, index, at, end.contact.pressure)
     rates = (fields.wear_rate_1 + fields.wear_rate_2)[own]
     worn = p > 0
     depths = np.array([fields.wear_1, fields.wear_2])
@@ -114,15 +113,15 @@ def _of_interface(end: Snapshot, index: int) -> dict:
         "friction": interface.nominal_friction if constant else None,
         "normal_force_N": float(system.force_per_pressure[own] @ p),
         **({"fluid_force_N": fluid[index]} if index in fluid else {}),
-        "friction_force_N": float(w @ friction),
-        "friction_torque_Nm": _torque(system.model, interface, pairing, friction),
+        "friction_force_N": friction.force,
+        "friction_torque_Nm": friction.torque,
         "max_pressure_Pa": float(p.max()),
         "mean_pressure_Pa": float(w @ p / w[worn].sum()) if worn.any() else 0.0,
         "min_pressure_Pa": float(p.min()),
         "contact_area_m2": float(w[worn].sum()),
         "contact_zones_m": contact_zones(pairing, p),
         "shape_range_m": float(np.ptp(shape)) if np.isfinite(shape).all() else None,
-        "friction_power_W": float(w @ (at.heating[own] * p)),
+        "friction_power_W": friction.power,
         **_conducted(end, own),
         "wear_dissipation_W": float(w @ (p * rates)),
         "wear_volume_1_m3": float(volumes[0]),
@@ -240,22 +239,6 @@ def merged(one: dict, other: dict) -> dict:
         if isinstance(table, dict) and isinstance(one.get(key), dict)
     }
     return one | other | shared
-
-
-def _torque(
-    model: Model, interface: Interface, pairing: Pairing, friction: np.ndarray
-) -> float | None:
-    """Friction moment about the axis of rotation of body 1 or 2 [N m]; None without one."""
-    motion = interface.motion
-    if model.kinematics == "axisymmetric" and motion.velocity is None:
-        return float(pairing.weights @ (friction * pairing.points[:, 0]))
-    if motion.axis is not None:
-        arms = motion.axis.velocity(pairing.points, 1.0)
-    elif motion.center is not None:
-        arms = pairing.points[:, :2] - np.array(motion.center)
-    else:
-        return None
-    return float(pairing.weights @ (friction * np.linalg.norm(arms, axis=1)))
 
 
 def _guide_reactions(

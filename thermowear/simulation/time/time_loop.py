@@ -1,30 +1,35 @@
-"""Time loop of contact, heat and wear, to an end time or to the steady state, with step control."""
+"""Time loop of contact, heat and wear, to an end time or to the steady state, with step control.
+
+Given steps, such as those of an earlier run, are taken again without error control.
+"""
 
 from __future__ import annotations
 
 import math
-from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial, reduce
+from functools import partial
 
 import numpy as np
 
 from ...errors import ComputationError
 from ...model.analyses import TimedAnalysis
 from ...serialise import serialisable
-from ..interface.sdirk import InterfaceState, TrialStep, WearProblem, advance_with_error, next_step
+from ..interface.sdirk import (
+    InterfaceState,
+    TrialStep,
+    WearProblem,
+    advance_with_error,
+    advance_without_error,
+)
+from .step_sizes import AnySize, StepSizes, ends, next_step
 
 _FAR_SMALLER = 1e-3
 """Size ratio of trial steps for detecting jumps: time errors fall at least by its square root."""
 _SMALLEST = 1e-12  # relative to the elapsed time; at the start to 1e-12 s
 
-_HIT = 1e-9
-"""Distance to a target time, relative to the time left, at which a step is taken to end there."""
 _ROUNDING, _STILL = 1e-9, 20
 """Error and number of successive steps, ever larger ones, in which nothing changes any more."""
-_FEW = 5
-"""Largest number of powers of two that make up an interval; bounds the number of small steps."""
 
 
 @serialisable
@@ -38,7 +43,7 @@ class Moment:
         End and size of the last step [s].
     state : InterfaceState
     error : float
-        Error estimate of the step.
+        Error estimate of the step; NaN for a given step.
     is_output : bool
         True at an output time.
     distance : float
@@ -60,85 +65,6 @@ class Moment:
     number: int
     begin: float
     wanted: float
-
-
-class StepSizes(ABC):
-    """Choice of step sizes between two consecutive times that must be hit exactly.
-
-    Parameters
-    ----------
-    largest : float, optional
-        Upper bound, which may change from step to step [s].
-
-    Attributes
-    ----------
-    rounding : float
-        Largest ratio of a wanted step size to the one chosen.
-    """
-
-    rounding = 1.0
-
-    def __init__(self, largest: float = math.inf):
-        self.largest = largest
-
-    @abstractmethod
-    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
-        """Step from a time between begin and end, not larger than the wanted one [s]."""
-
-
-class AnySize(StepSizes):
-    """Largest admissible steps that do not leave a tiny last one."""
-
-    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
-        left, wanted = end - time, min(wanted, self.largest)
-        return left if ends(wanted, left) else min(wanted, max(left / 2, 0.1 * wanted))
-
-
-class FewSizes(StepSizes):
-    """Power-of-two multiples of one step size, so that few operators serve all steps.
-
-    Each step begins at a multiple of its size (dyadic grid): the time left to the next target is
-    always a sum of few such steps.
-
-    Parameters
-    ----------
-    times : iterable of float
-        All times that must be hit exactly [s].
-    """
-
-    rounding = 2.0
-
-    def __init__(self, times: Iterable[float]):
-        super().__init__()
-        self._measure = reduce(_common_measure, (t for t in times if t < math.inf), 0.0)
-
-    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
-        unit, passed = self._unit(end - begin), time - begin
-        wanted = min(wanted, self.largest, end - time)
-        size = unit * 2.0 ** math.floor(math.log2(wanted / unit) + _HIT)
-        while abs(math.remainder(passed, size)) > 1e-3 * size:
-            size /= 2
-        return size
-
-    def _unit(self, interval: float) -> float:
-        """Unit of the step sizes: common measure of all times, or the interval if too fine [s]."""
-        measure = self._measure or 1.0
-        if interval == math.inf or round(interval / measure).bit_count() <= _FEW:
-            return measure
-        return interval
-
-
-def ends(step: float, left: float) -> bool:
-    """Test whether a step covers the time left, up to rounding [s]."""
-    return step >= left * (1 - _HIT)
-
-
-def _common_measure(a: float, b: float) -> float:
-    """Greatest common divisor of two real numbers by Euclid's algorithm, up to rounding."""
-    rounding = _HIT * max(a, b)
-    while b > rounding:
-        a, b = b, abs(math.remainder(a, b))
-    return a
 
 
 def moments(
@@ -172,15 +98,17 @@ def moments(
         distance, wanted = problem.distance(state, steady), problem.first_step(state)
         last = Moment(0.0, 0.0, state, 0.0, False, distance, 0, 0.0, wanted)
         yield last
-    targets = [time for time in times_to_hit(settings, problem) if time > last.time]
-    still = 0
+    times = times_to_hit(settings, problem)
+    targets = [time for time in times if time > last.time]
+    _require_valid(settings, times)
+    advanced, still = _repeated if settings.steps else _next, 0
     while not is_over(settings, last):
-        if last.number == settings.max_steps:
+        if last.number == settings.max_steps and not settings.steps:
             raise ComputationError(
                 f"{settings.type}: {settings.max_steps} steps were not enough "
                 f"(analysis.max_steps), the run stands at {last.time:g} s"
             )
-        last = _next(problem, settings, steady, sizes, targets[0], last)
+        last = advanced(problem, settings, steady, sizes, targets[0], last)
         if last.time == targets[0]:
             targets.pop(0)
         yield last
@@ -195,8 +123,58 @@ def moments(
 
 def is_over(settings: TimedAnalysis, last: Moment) -> bool:
     """Test whether the running-in ends with this state."""
+    if settings.steps:
+        return last.number == len(settings.steps)
     steady = settings.until == "steady" and last.distance <= settings.steady_tolerance
     return steady or last.time >= max((settings.end_time, *settings.output_times))
+
+
+def _require_valid(settings: TimedAnalysis, targets: list[float]) -> None:
+    """Require given steps to increase, to hit the targets [s] in between, and not to pass all."""
+    steps = settings.steps
+    if not steps:
+        return
+    if not np.all(np.diff([0.0, *steps, targets[-1] * (1 + _SMALLEST)]) > 0.0):
+        raise ComputationError(
+            f"{settings.type}: the given ends of time steps must increase from 0 to the end time "
+            "at most"
+        )
+    missed = sorted({time for time in targets if time <= steps[-1]} - set(steps))
+    if missed:
+        raise ComputationError(
+            f"{settings.type}: none of the given time steps ends at {missed[0]:g} s, an output "
+            "time or a kink of a history"
+        )
+
+
+def _repeated(
+    problem: WearProblem,
+    settings: TimedAnalysis,
+    steady,
+    sizes: StepSizes,
+    target: float,
+    last: Moment,
+) -> Moment:
+    """Given step, without error control, before or up to a target time [s]."""
+    time = settings.steps[last.number]
+    step = sizes.nominal(time - last.time, last.begin, target)
+    try:
+        state = advance_without_error(problem, last.state, last.time, step)
+    except ComputationError as failure:
+        raise ComputationError(
+            f"{settings.type}: the given step from {last.time:g} to {time:g} s failed ({failure})"
+        ) from None
+    return Moment(
+        time=time,
+        step=step,
+        state=state,
+        error=math.nan,
+        is_output=time in settings.output_times,
+        distance=problem.distance(state, steady),
+        number=last.number + 1,
+        begin=target if time == target else last.begin,
+        wanted=step,
+    )
 
 
 def _next(

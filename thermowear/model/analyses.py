@@ -95,6 +95,8 @@ class TimedAnalysis(SteppedAnalysis):
     steady_tolerance : float
     max_steps : int
         Limit of the number of steps with error control.
+    hits : tuple of float
+        Times at which steps end, beside the output times [s].
     steps : tuple of float
         Ends of the time steps [s], such as those of an earlier run, which are taken without error
         control (internal numerical differentiation; Bock 1981): the results are then smooth
@@ -108,6 +110,7 @@ class TimedAnalysis(SteppedAnalysis):
     until: Literal["steady"] | None = None
     steady_tolerance: float = 1e-3
     max_steps: int = 10_000
+    hits: tuple[float, ...] = ()
     steps: tuple[float, ...] = ()
 
 

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -175,7 +174,8 @@ def calibrate(
     if reason := (model.failure(start) if not np.isfinite(model.predict(start)).all() else ""):
         raise ComputationError(f"calibrate: the run with the first values failed: {reason}")
     table = problem.table
-    found = fit(problem.space, observations, model, table.tolerance, table.max_evaluations, problem.noise(model))
+    search = table.tolerance, table.max_evaluations, problem.noise(model)
+    found = fit(problem.space, observations, model, *search)
     identified = identify(problem.space, found.jacobian, found.noise)
     further = suggestions(problem.space, model, found.values, identified)
     posterior = None
@@ -255,7 +255,7 @@ class _Problem:
         made = experiments(self.case, self.measurements)
         return CaseModel(self.table, made, executor, count)
 
-    def noise(self, model: CaseModel) -> dict[str, Any] | float:
+    def noise(self, model: CaseModel) -> float:
         """Relative noise of the derivatives."""
         return 1e-4 if model.smooth else _ROUGH_NOISE
 
@@ -267,8 +267,9 @@ class _Problem:
 
     @property
     def relative(self) -> np.ndarray:
-        """Relative deviations of planned measurements."""
-        return np.concatenate([one.relative for one in self.measurements])
+        """Relative deviations of all planned values."""
+        each = [np.full(len(one.values), one.relative) for one in self.measurements]
+        return np.concatenate(each)
 
 
 def _files(case: AnyCase, data) -> dict[str, Path]:

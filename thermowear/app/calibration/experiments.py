@@ -124,3 +124,32 @@ def overrides_of(table: CalibrationTable, values: np.ndarray) -> tuple[str, ...]
     """Changes of the case for values of the parameters, in the units of their first values."""
     named = {name: float(value) for name, value in zip(table.parameters, values, strict=True)}
     return table.overrides(named)
+
+
+_CONDITIONS = {
+    "load": ("force", "mean_pressure", "approach"),
+    "motion": ("velocity", "angular_velocity"),
+}
+_CONDITIONS |= {"holders": _CONDITIONS["load"], "motions": _CONDITIONS["motion"]}
+_OTHERWISE = 2.0
+"""Factor of other conditions."""
+
+
+def other_conditions(experiment: Experiment) -> dict[str, Experiment]:
+    """The experiment at twice a load or speed of the case, by the path of the key."""
+    found = {}
+    for table, keys in _CONDITIONS.items():
+        given = experiment.tables.get(table) or {}
+        tables = given.items() if table.endswith("s") else [("", given)]
+        for name, own in tables:
+            for key in keys:
+                if isinstance(own.get(key), str):
+                    path = ".".join(filter(None, (table, name, key)))
+                    number, _, unit = own[key].partition(" ")
+                    changed = f'{path}="{_OTHERWISE * float(number)!r} {unit}"'
+                    try:
+                        tables_ = as_plain(load(experiment.tables, (changed,)))
+                    except CaseError:
+                        continue
+                    found[path] = replace(experiment, tables=tables_)
+    return found

@@ -12,7 +12,7 @@ from ...case.studies.calibration import CalibrationTable
 from ...case.tables.analyses import Transient
 from ...errors import CaseError, ComputationError
 from ..batch.computing import Lost, compute, new_series
-from .experiments import Experiment, overrides_of
+from .experiments import Experiment, other_conditions, overrides_of
 from .readings import summary_numbers
 
 _SMOOTH, _ROUGH = 1e-4, 2e-2
@@ -75,8 +75,9 @@ def predict(series, trial: Trial) -> Prediction:
         case = with_accurate_mesh(experiment.case(trial.overrides), series.comm)
         analysis = analysis_of(case)
         if isinstance(case.analysis, Transient):
-            end = max(experiment.times) if experiment.ends_with_times() else analysis.end_time
-            analysis = replace(analysis, end_time=end, hits=experiment.times, steps=trial.steps)
+            if experiment.ends_with_times():
+                analysis = replace(analysis, end_time=max(experiment.times), until=None)
+            analysis = replace(analysis, hits=experiment.times, steps=trial.steps)
         result = series.run(model_of(case), analysis)
         if isinstance(result.stopped, KeyboardInterrupt):
             raise result.stopped
@@ -135,6 +136,11 @@ class CaseModel:
             self._find_times()
 
     @property
+    def smooth(self) -> bool:
+        """True if neighbouring runs take the same time steps."""
+        return self._follows
+
+    @property
     def step(self) -> float:
         """Step of finite differences in internal coordinates."""
         return _SMOOTH if self._follows else _ROUGH
@@ -163,6 +169,13 @@ class CaseModel:
                 }
             )
         return named
+
+    def with_other_conditions(self) -> dict[str, CaseModel]:
+        """Models of the first experiment at other loads and speeds, by the path of the key."""
+        return {
+            key: CaseModel(self._table, [one], self._executor, self._workers)
+            for key, one in other_conditions(self._experiments[0]).items()
+        }
 
     def failure(self, values: np.ndarray) -> str:
         """Reason of the first failed run with values of the parameters; empty for none."""

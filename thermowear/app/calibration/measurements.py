@@ -32,7 +32,10 @@ class Measurement:
         Name of the observation, with the quantity where a file has several.
     reading : Reading
     values, deviations : ndarray, shape (n,)
-        Values and standard deviations [SI]; values are NaN where only a measurement is planned.
+        Values and standard deviations [SI]; NaN where only a measurement is planned, deviations if
+        they are relative.
+    relative : float
+        Relative deviation of a planned measurement.
     changes : tuple of str
         Keys of the case that had other values, as ``KEY=VALUE``.
     file : str
@@ -44,6 +47,7 @@ class Measurement:
     deviations: np.ndarray
     changes: tuple[str, ...]
     file: str
+    relative: float = 0.0
 
 
 def read_measurements(
@@ -129,7 +133,8 @@ def _measurement(
     label = f"{name}: {quantity}" if several > 1 else name
     deviations = _deviations(columns, column, values, own)
     changes = tuple(f"{key}={written(value)}" for key, value in own.set.items())
-    return Measurement(label, given, values, deviations, changes, columns.name)
+    relative = (own.deviation.relative if own.deviation else None) or 0.0
+    return Measurement(label, given, values, deviations, changes, columns.name, relative)
 
 
 def _deviations(
@@ -150,7 +155,7 @@ def _deviations(
         else:
             assert own.deviation.relative is not None
             found = own.deviation.relative * np.abs(values)
-    if not (found > 0.0).all():
+    if (found <= 0.0).any():
         raise ValueError(f"{columns.name}: the {_DEVIATION} of {column} must be greater than 0")
     return found
 

@@ -243,4 +243,4 @@ def times_to_hit(settings: TimedAnalysis, problem: WearProblem) -> list[float]:
     """Times that must be hit exactly, in increasing order; the last one ends the run [s]."""
     end = settings.end_time
     corners = () if end == np.inf else problem.corners(end)
-    return sorted({*settings.output_times, *corners, end})
+    return sorted({*settings.output_times, *(t for t in settings.hits if t <= end), *corners, end})

@@ -1,0 +1,106 @@
+"""Further measurements that would determine what the present ones do not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...inference import Identifiability, ParameterSpace, settling
+from ...results.summary_keys import GROUPS
+from ...results.quantity import split_key
+from .forward import CaseModel
+
+_GROUPS = ("Loads and forces", "Pressure and contact", "Wear", "Heat and energy")
+_NOT_MEASURED = ("error", "balance", "dissipation", "distance_from", "rigid_wear", "min_pressure")
+_WORTH = 0.02
+"""Least relative change along the undetermined direction, per unit of its largest part."""
+_MOST = 3
+
+
+@dataclass(frozen=True)
+class Suggestion:
+    """Measurement that would settle an undetermined direction.
+
+    Attributes
+    ----------
+    text : str
+    change : float
+        Relative change of the measured values along the direction, per unit of the internal
+        coordinate that changes most.
+    """
+
+    text: str
+    change: float
+
+
+def suggestions(
+    space: ParameterSpace, model: CaseModel, values: np.ndarray, found: Identifiability
+) -> tuple[Suggestion, ...]:
+    """Other quantities of the same runs, or else the same ones under other conditions.
+
+    Parameters
+    ----------
+    space : ParameterSpace
+    model : CaseModel
+    values : ndarray, shape (p,)
+        Values of the parameters.
+    found : Identifiability
+        Directions that the present measurements do not determine.
+    """
+    if found.identified:
+        return ()
+    internal, step = space.internal(values), model.step
+    others = list(space.admissible(internal + step * np.eye(len(space))))
+    suggested: dict[str, Suggestion] = {}
+    candidates = _numbers(model, values, others, step)
+    conditions: dict[str, tuple[np.ndarray, np.ndarray]] | None = None
+    for direction in found.null.T:
+        ranked = settling(direction, candidates)
+        if not ranked or ranked[0].change < _WORTH:
+            if conditions is None:
+                conditions = _conditions(model, values, others, step)
+            ranked = settling(direction, conditions)
+        for one in ranked[:_MOST]:
+            if one.change >= _WORTH:
+                suggested.setdefault(one.name, Suggestion(one.name, one.change))
+    return tuple(suggested.values())
+
+
+def _numbers(
+    model: CaseModel, values: np.ndarray, others: list[np.ndarray], step: float
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Measurable numbers of the summaries, with their derivatives."""
+    base, *moved = model.numbers(values, [values, *others])
+    found = {}
+    for name, number in base.items():
+        if not _is_measured(name.partition(" ")[0]):
+            continue
+        changes = np.array([one.get(name, np.nan) - number for one in moved])
+        if np.isfinite(changes).all():
+            found[f"a measurement of {name}"] = np.array([number]), changes[None] / step
+    return found
+
+
+def _conditions(
+    model: CaseModel, values: np.ndarray, others: list[np.ndarray], step: float
+) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """The present measurements under other loads and speeds, with their derivatives."""
+    found = {}
+    for key, changed in model.with_other_conditions().items():
+        base, *moved = changed.neighbours(values, [values, *others])
+        slopes = (np.array(moved) - base).T / step
+        if np.isfinite(slopes).all():
+            found[f"the same measurements at another {key}"] = base, slopes
+    return found
+
+
+def _is_measured(name: str) -> bool:
+    """Test for a number of the summary that can be measured."""
+    name = name.rpartition(".")[2]
+    known = {
+        "_".join(split_key(quantity.header)[0].split())
+        for group in _GROUPS
+        for quantity in GROUPS[group]
+    }
+    return name in known and not any(word in name for word in _NOT_MEASURED)

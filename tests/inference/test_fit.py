@@ -119,15 +119,16 @@ def test_undetermined_parameters_have_infinite_intervals():
     assert found.degrees_of_freedom == 3
 
 
-def test_active_bounds_are_named():
+@pytest.mark.parametrize(("start", "lower", "upper", "at"), [(1, -5, 1.5, 1.5), (4, 3, 5, 3)])
+def test_active_bounds_are_named(start, lower, upper, at):
     """requirement: optimum beyond a bound: value at the bound, others the best there."""
-    space = ParameterSpace((Parameter("a", 0.5, -10.0, 10.0), Parameter("b", 1.0, -5.0, 1.5)))
+    space = ParameterSpace((Parameter("a", 0.5, -10, 10), Parameter("b", start, lower, upper)))
     found = line_fit(space)
     weights = 1 / DEVIATIONS**2
-    exact = np.sum(weights * (MEASURED - 1.5 * LINE[:, 1])) / weights.sum()
+    exact = np.sum(weights * (MEASURED - at * LINE[:, 1])) / weights.sum()
     assert found.at_bounds == ("b",)
-    assert found.values == pytest.approx([exact, 1.5], rel=1e-4)
-    assert found.values[1] <= 1.5
+    assert found.values == pytest.approx([exact, at], rel=1e-4)
+    assert lower <= found.values[1] <= upper
 
 
 def test_each_point_is_predicted_once_and_neighbours_refer_to_it():

@@ -126,6 +126,22 @@ def test_without_any_effect_there_is_no_combination():
     assert identify(space, np.zeros((3, 2))).undetermined == ("wear.k", "friction.mu")
 
 
+def test_small_couplings_do_not_take_part():
+    """requirement: c measured apart from 0.2 % of k is determined, k and b are not."""
+    space = ParameterSpace((K, B, Parameter("wear.c", 1.0, 0.1, 10.0, log=True)))
+
+    def function(values):
+        k, b, c = values
+        return np.array([k * 20.0**b, k + c, k + c])
+
+    found = identify(space, weighted(space, function, [2e-3, 1.4, 1.0]))
+    assert found.structural.tolist() == [False, False, True]
+    assert 1e-3 < abs(found.null[2, 0]) < 3e-3
+    assert found.undetermined == ("wear.k", "wear.b")
+    assert [combination.text for combination in found.combinations] == ["k · 20^b"]
+    assert found.normal.standard_errors[2] == pytest.approx(0.05 / np.sqrt(2), rel=1e-2)
+
+
 def test_noise_of_differences_does_not_identify():
     """requirement: predictions with relative noise 1e-10, steps 1e-4: noise below the tolerance."""
     space = ParameterSpace((K, MU))

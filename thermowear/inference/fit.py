@@ -22,6 +22,7 @@ from .observations import Observations
 from .parameters import ParameterSpace
 
 _AT_BOUND = 1e-3  # distance to a bound relative to the distance of both
+_LEAST = 1e-12  # smallest scatter, relative to the deviations, for residuals that are zero
 _ENDINGS = {
     0: "not converged: the largest number of evaluations was reached",
     1: "converged: the gradient is small",
@@ -91,8 +92,7 @@ class Fit:
                 f"{len(self.observations)} observations determine {self.determined} parameters: "
                 "none is left to estimate the scatter"
             )
-        factor = np.sqrt(np.sum(self.residuals**2) / free) or np.finfo(float).tiny
-        rows = self.jacobian / factor
+        rows = self.jacobian / max(np.sqrt(np.sum(self.residuals**2) / free), _LEAST)
         return JointNormal.from_jacobian(self.space, self.internal, rows, self.noise, free)
 
     @property

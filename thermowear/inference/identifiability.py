@@ -68,9 +68,7 @@ def identify(space: ParameterSpace, jacobian: np.ndarray, noise: float = NOISE) 
     """Identifiability by observations with a weighted Jacobian (n, p), without priors."""
     singular_values, directions = principal_directions(jacobian)
     structural = without_effect(singular_values, noise)
-    with np.errstate(divide="ignore"):
-        reach = np.min(space.widths[:, None] / np.abs(directions), axis=0)
-        practical = ~structural & (1 / singular_values > reach)
+    practical = ~structural & (singular_values * space.reach(directions) < 1)
     found = Identifiability(space, singular_values, directions, structural, practical, ())
     return Identifiability(
         space, singular_values, directions, structural, practical, combinations(found.normal)

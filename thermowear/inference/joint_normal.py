@@ -18,6 +18,7 @@ from .parameters import ParameterSpace
 
 PART = 1e-3
 """Component of a parameter in a direction of unit length from which on it takes part in it."""
+_SMALL = 1e-2  # change along an undetermined direction, relative to the distance of the bounds
 _ROUNDING = 1e-12
 
 
@@ -81,8 +82,13 @@ class JointNormal:
 
     @cached_property
     def undetermined(self) -> np.ndarray:
-        """True for parameters that take part in a direction that is not determined, shape (p,)."""
-        return np.linalg.norm(self.null, axis=1) > PART
+        """True for parameters that take part in a direction that is not determined, shape (p,).
+
+        Parameters that change less than their deviation along it, within the bounds, are left out.
+        """
+        change = np.abs(self.null) @ self.space.reach(self.null)
+        small = np.minimum(np.linalg.norm(self.factor, axis=1), _SMALL * self.space.widths)
+        return (np.linalg.norm(self.null, axis=1) > PART) & (change > small)
 
     @property
     def deviations(self) -> np.ndarray:

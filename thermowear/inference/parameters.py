@@ -159,11 +159,14 @@ class ParameterSpace:
         internal = np.asarray(internal, dtype=float)
         return np.all((internal >= self.bounds[0]) & (internal <= self.bounds[1]), axis=-1)
 
+    def reach(self, directions: np.ndarray) -> np.ndarray:
+        """Distances of the bounds along directions (p, m) of unit length, shape (m,)."""
+        with np.errstate(divide="ignore"):
+            return np.min(self.widths[:, None] / np.abs(directions), axis=0)
+
     def prior_residuals(self, internal) -> np.ndarray:
         """Deviations from the means of the priors, in standard deviations, shape (…, m)."""
-        return self._prior_residual(np.asarray(internal, dtype=float) * self.scale)
-
-    def _prior_residual(self, scaled: np.ndarray) -> np.ndarray:
+        scaled = np.asarray(internal, dtype=float) * self.scale
         chosen = [(i, p.prior) for i, p in enumerate(self.parameters) if p.prior is not None]
         columns = [(scaled[..., i] - prior.mean) / prior.deviation for i, prior in chosen]
         return np.stack(columns, axis=-1) if columns else np.zeros((*scaled.shape[:-1], 0))

@@ -16,6 +16,8 @@ import numpy as np
 from .distributions import UncertainInput
 from .sampling import columns_of, values_at
 
+_ROUNDING = 1e-12  # relative deviation of an output that counts as constant
+
 
 @dataclass(frozen=True)
 class SobolIndices:
@@ -81,8 +83,8 @@ class _Terms:
     """Terms of the sums over rows; zero in rows that are left out."""
 
     used: np.ndarray  # (n, k)
-    outputs: np.ndarray  # (n, k), a + b
-    squares: np.ndarray  # (n, k), a² + b²
+    squares: np.ndarray  # (n, k), (a² + b²)/2
+    least: np.ndarray  # (k,), variance by rounding
     first: np.ndarray  # (d, n, k)
     total: np.ndarray  # (d, n, k)
 
@@ -91,16 +93,16 @@ def _terms(a: np.ndarray, b: np.ndarray, ab: np.ndarray, used: np.ndarray) -> _T
     count = np.maximum(used.sum(axis=0), 1)
     mean = (np.where(used, a, 0.0) + np.where(used, b, 0.0)).sum(axis=0) / (2 * count)
     a, b, ab = (np.where(used, each - mean, 0.0) for each in (a, b, ab))
-    return _Terms(used.astype(float), a + b, a**2 + b**2, b * (ab - a), (a - ab) ** 2 / 2)
+    squares, least = (a**2 + b**2) / 2, (_ROUNDING * mean) ** 2
+    return _Terms(used.astype(float), squares, least, b * (ab - a), (a - ab) ** 2 / 2)
 
 
 def _estimate(weights: np.ndarray, terms: _Terms) -> tuple[np.ndarray, np.ndarray]:
     """Indices for weights (R, n) of the rows, each of shape (R, d, k)."""
     with np.errstate(invalid="ignore", divide="ignore"):
         count = weights @ terms.used
-        mean = weights @ terms.outputs / (2 * count)
-        variance = weights @ terms.squares / (2 * count) - mean**2
-        scale = (count * np.where(variance > 0, variance, np.nan))[:, None]
+        variance = weights @ terms.squares / count
+        scale = (count * np.where(variance > terms.least, variance, np.nan))[:, None]
         sums = (np.moveaxis(weights @ each, 0, 1) for each in (terms.first, terms.total))
         first, total = (each / scale for each in sums)
     return first, total

@@ -191,7 +191,12 @@ class CaseModel:
         self, values: np.ndarray, others: Sequence[np.ndarray]
     ) -> list[list[Prediction]]:
         steps = [one.steps if self._follows else () for one in self._at(values)]
-        return self._computed([(other, steps) for other in others])
+        start = np.asarray(values, dtype=float).tobytes()
+        keys = [start + np.asarray(other, dtype=float).tobytes() for other in others]
+        new = [k for k, key in enumerate(keys) if key not in self._known]
+        computed = self._computed([(others[k], steps) for k in new])
+        self._known |= {keys[k]: found for k, found in zip(new, computed, strict=True)}
+        return [self._known[key] for key in keys]
 
     def _computed(
         self, wanted: Sequence[tuple[np.ndarray, Sequence[tuple[float, ...]]]]

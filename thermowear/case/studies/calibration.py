@@ -134,7 +134,7 @@ class CalibrationTable(Section):
     set: dict[str, str] = {}
     observations: dict[str, ObservationTable] = {}
     deviations: Literal["known", "estimated"] = "known"
-    tolerance: Annotated[Number, Field(gt=0.0, le=1e-2)] = 1e-8
+    tolerance: Annotated[Number, Field(gt=0.0, le=1e-2)] = 1e-6
     max_evaluations: Annotated[int, Field(ge=1, le=100_000, strict=True)] = 100
     confidence: Percentage = 0.95
     posterior: PosteriorTable | None = None

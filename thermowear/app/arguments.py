@@ -43,6 +43,20 @@ def parser() -> argparse.ArgumentParser:
     _add_output(sweep, "DIR", help="default: results/<case>-sweep")
     _add_batch(sweep)
 
+    calibrate = _command(commands, "calibrate", "find parameters of a case from measured data")
+    _add_case(calibrate)
+    calibrate.add_argument(
+        "--data",
+        metavar="[NAME=]FILE",
+        action="append",
+        default=[],
+        help="CSV file of an observation; can be repeated",
+    )
+    _add_flag(calibrate, "--plan", "how well measurements would determine the parameters")
+    _add_output(calibrate, "DIR", help="default: results/<case>-calibration")
+    _add_flag(calibrate, "--overwrite", "replace existing results")
+    _add_workers(calibrate)
+
     _command(commands, "cases", "list the starter cases")
 
     init = _command(commands, "init", "write a starter case to edit")
@@ -119,6 +133,11 @@ def _add_batch(command: argparse.ArgumentParser) -> None:
     existing = command.add_mutually_exclusive_group()
     _add_flag(existing, "--overwrite", "replace existing results")
     _add_flag(existing, "--resume", "compute the variants that are missing in DIR")
+    _add_workers(command)
+
+
+def _add_workers(command: argparse.ArgumentParser) -> None:
+    """Options of commands that compute many variants: pictures, and who computes."""
     command.add_argument("--no-pictures", dest="pictures", action="store_false")
     command.add_argument(
         "--executor",

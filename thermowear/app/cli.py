@@ -162,8 +162,8 @@ def _mesh(chosen) -> int:
 def _shape(chosen) -> int:
     if _launched_processes() > 1:
         raise CaseError("shape: runs in one process; start it without mpirun")
-    from .shaping import check_format, shape, write_shape
     from .batch.computing import start_petsc
+    from .shaping import check_format, shape, write_shape
 
     check_format(chosen.output)
     start_petsc()
@@ -183,11 +183,13 @@ def _check_absent(path: Path, overwrite: bool) -> None:
 
 
 def _plot(chosen) -> int:
+    from ..output.calibration import draw_calibration, is_calibration
     from ..output.pictures import make_pictures
     from ..output.sweep import draw_sweep, is_sweep
 
     try:
         draw = draw_sweep if is_sweep(chosen.folder) else make_pictures
+        draw = draw_calibration if is_calibration(chosen.folder) else draw
         problems = draw(chosen.folder)
     except (OSError, ValueError) as error:
         raise CaseError(str(error)) from None
@@ -209,9 +211,11 @@ def _animate(chosen) -> int:
 
 
 def _report(chosen) -> int:
+    from ..output.calibration import is_calibration, write_calibration_report
     from ..output.report import write_report
 
-    print(f"wrote {write_report(chosen.folder)}")
+    write = write_calibration_report if is_calibration(chosen.folder) else write_report
+    print(f"wrote {write(chosen.folder)}")
     return 0
 
 
@@ -266,16 +270,40 @@ def _run(chosen) -> int:
 
 
 def _sweep(chosen) -> int:
-    if _launched_processes() > 1 and chosen.executor != "mpi":
-        raise CaseError(
-            "sweep: starts its own processes (--processes N); start it without mpirun, or use "
-            "--executor mpi"
-        )
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     from .sweeping import run_sweep
 
-    return run_sweep(chosen)
+    return _batch(chosen, run_sweep)
 
 
-_ALL = _run, _sweep, _cases, _init, _validate, _mesh, _shape, _verify, _plot, _animate, _report
+def _calibrate(chosen) -> int:
+    from .calibration.command import run_calibration
+
+    return _batch(chosen, run_calibration)
+
+
+def _batch(chosen, run) -> int:
+    """Run a command that distributes runs to workers."""
+    if _launched_processes() > 1 and chosen.executor != "mpi":
+        raise CaseError(
+            f"{chosen.command}: starts its own processes (--processes N); start it without mpirun, "
+            "or use --executor mpi"
+        )
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    return run(chosen)
+
+
+_ALL = (
+    _run,
+    _sweep,
+    _calibrate,
+    _cases,
+    _init,
+    _validate,
+    _mesh,
+    _shape,
+    _verify,
+    _plot,
+    _animate,
+    _report,
+)
 _COMMANDS = {command.__name__[1:]: command for command in _ALL}

@@ -24,7 +24,7 @@ class Work(Protocol):
     It returns an outcome that can be pickled. Errors that it raises end the batch.
     """
 
-    def __call__(self, series: Any, task: Any) -> Any:
+    def __call__(self, series: Any, task: Any, /) -> Any:
         """Compute a task.
 
         Parameters

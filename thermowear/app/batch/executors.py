@@ -122,7 +122,8 @@ def _ranks() -> Iterator[Workers]:
         raise CaseError(
             "--executor mpi: found one process; start it by mpirun -n N python3 -m thermowear …"
         )
-    with MPICommExecutor(MPI.COMM_WORLD, root=0) as executor:
+    with MPICommExecutor(MPI.COMM_WORLD, root=0) as ranks:
+        executor: Any = ranks  # None on all ranks but the first
         yield Workers(executor, MPI.COMM_WORLD.size - 1)
 
 

@@ -7,6 +7,7 @@ import signal
 import threading
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
+from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import connection, get_context
 from queue import Empty, SimpleQueue
@@ -168,10 +169,8 @@ class _Worker:
 
     def end(self) -> None:
         """End the process."""
-        try:
+        with suppress(OSError):
             self.pipe.send(None)
-        except OSError:
-            pass
         self.process.join(1.0)
         self.process.kill()
         self.pipe.close()
@@ -198,6 +197,7 @@ def _work(pipe) -> None:
     try:
         while (message := pipe.recv()) is not None:
             function, arguments, keywords = message
+            answer: tuple[Any, BaseException | None]
             try:
                 answer = function(*arguments, **keywords), None
             except (Exception, KeyboardInterrupt) as error:

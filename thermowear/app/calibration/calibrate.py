@@ -30,11 +30,14 @@ from ...inference import (
     identify,
     sample_posterior,
 )
+from ...inference.jacobian import NOISE
 from .experiments import experiments
 from .forward import CaseModel
 from .measurements import Measurement, read_measurements
 from .settling import Suggestion, suggestions
 
+_UNLIKELY = 1e-3
+"""Probability of residuals from which on they are reported as too large."""
 _ROUGH_NOISE = 0.05
 """Noise of derivatives, relative to the largest, of runs with time steps of their own."""
 
@@ -99,16 +102,9 @@ class Calibration:
         """Sentences on what the data do not determine, and on a fit that is not good."""
         found = [] if self.fit.converged else [f"the fit has {self.fit.message}"]
         found += [f"{name} ended at a bound" for name in self.fit.at_bounds]
-        if not self.identifiability.identified:
-            names = ", ".join(self.identifiability.undetermined)
-            known = "; ".join(one.text for one in self.identifiability.combinations)
-            found.append(
-                f"the data do not determine {names} one by one, but "
-                f"{f'{known} only' if known else 'none of them'}"
-            )
-            found += [f"this would settle it: {one.text}" for one in self.suggestions]
+        found += _undetermined(self.identifiability, self.suggestions)
         p_value = self.fit.p_value
-        if self.table.deviations == "known" and p_value < 1e-3:
+        if self.table.deviations == "known" and p_value < _UNLIKELY:
             found.append(
                 f"the residuals are larger than the deviations explain (reduced chi² "
                 f"{self.fit.reduced_chi2:.3g}, p = {p_value:.1g}): the model or the deviations "
@@ -127,6 +123,12 @@ class Planned:
     ----------
     table : CalibrationTable
     measurements : tuple of Measurement
+    values : ndarray, shape (p,)
+        Values of the parameters that are assumed, the first ones.
+    predicted, deviations : ndarray, shape (n,)
+        Predictions and standard deviations of the measurements [SI].
+    jacobian : ndarray, shape (n, p)
+        Derivatives of the predictions in internal coordinates.
     design : MeasurementDesign
     identifiability : Identifiability
     suggestions : tuple of Suggestion
@@ -134,9 +136,28 @@ class Planned:
 
     table: CalibrationTable
     measurements: tuple[Measurement, ...]
+    values: np.ndarray
+    predicted: np.ndarray
+    deviations: np.ndarray
+    jacobian: np.ndarray
     design: MeasurementDesign
     identifiability: Identifiability
     suggestions: tuple[Suggestion, ...]
+
+    def notes(self) -> list[str]:
+        """Sentences on what the measurements would not determine."""
+        return _undetermined(self.identifiability, self.suggestions)
+
+
+def _undetermined(found: Identifiability, further: tuple[Suggestion, ...]) -> list[str]:
+    """Sentences on parameters that are not determined, and on what would determine them."""
+    if found.identified:
+        return []
+    names = ", ".join(found.undetermined)
+    known = "; ".join(one.text for one in found.combinations)
+    only = f"but {known} only" if known else "nor any combination of them"
+    text = f"the data do not determine {names} one by one, {only}"
+    return [text, *(f"this would settle it: {one.text}" for one in further)]
 
 
 def calibrate(
@@ -225,6 +246,10 @@ def plan(
     return Planned(
         problem.table,
         tuple(problem.measurements),
+        space.start,
+        predicted,
+        deviations,
+        jacobian,
         expected_accuracy(space, internal, jacobian, deviations, labels, noise),
         identified,
         suggestions(space, model, space.start, identified),
@@ -257,7 +282,7 @@ class _Problem:
 
     def noise(self, model: CaseModel) -> float:
         """Relative noise of the derivatives."""
-        return 1e-4 if model.smooth else _ROUGH_NOISE
+        return NOISE if model.smooth else _ROUGH_NOISE
 
     @property
     def weights(self) -> tuple[np.ndarray, tuple[str, ...]]:

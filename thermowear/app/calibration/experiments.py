@@ -89,13 +89,15 @@ def experiments(case: AnyCase, measurements: Sequence[Measurement]) -> list[Expe
             own = load(tables, changes)
         except CaseError as error:
             names = ", ".join(one.label for one in members)
-            raise CaseError(*(f"calibrate.observations ({names}): {f}" for f in error.faults)) from None
+            raise CaseError(
+                *(f"calibrate.observations ({names}): {f}" for f in error.faults)
+            ) from None
         found.append(_experiment(own, members))
     return found
 
 
 def _experiment(case: AnyCase, members: list[Measurement]) -> Experiment:
-    """Experiment that ends with its last measurement, and records the faces when they were measured."""
+    """Experiment that records the faces at the times at which they were measured."""
     tables = {key: table for key, table in as_plain(case).items() if key not in _OTHER}
     times = [float(t) for one in members for t in one.reading.times]
     if times and not isinstance(case.analysis, Timed):
@@ -105,12 +107,15 @@ def _experiment(case: AnyCase, members: list[Measurement]) -> Experiment:
         )
     if isinstance(case.analysis, Timed):
         shown = [float(t) for one in members if one.reading.places for t in one.reading.times]
-        analysis = tables["analysis"] | {"frames": 0, "output_times": [f"{t!r} s" for t in _distinct(shown)]}
+        analysis = tables["analysis"] | {
+            "frames": 0,
+            "output_times": [f"{t!r} s" for t in _distinct(shown)],
+        }
         end = case.analysis.end_time
         if times and (end is None or max(times) > end):
             raise CaseError(
-                f"calibrate.observations: {members[0].label} goes to {max(times):g} s; the analysis "
-                "ends before (analysis.end_time)"
+                f"calibrate.observations: {members[0].label} goes to {max(times):g} s; the "
+                "analysis ends before (analysis.end_time)"
             )
         tables = tables | {"analysis": analysis}
     return Experiment(tables, tuple(members), _distinct(times))

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...case.studies.calibration import CalibrationTable
-from ...case.tables.analyses import Transient
 from ...errors import CaseError, ComputationError
+from ...model.analyses import TransientAnalysis
 from ..batch.computing import Lost, compute, new_series
 from .experiments import Experiment, other_conditions, overrides_of
 from .readings import summary_numbers
@@ -74,7 +74,7 @@ def predict(series, trial: Trial) -> Prediction:
     try:
         case = with_accurate_mesh(experiment.case(trial.overrides), series.comm)
         analysis = analysis_of(case)
-        if isinstance(case.analysis, Transient):
+        if isinstance(analysis, TransientAnalysis):
             if experiment.ends_with_times():
                 analysis = replace(analysis, end_time=max(experiment.times), until=None)
             analysis = replace(analysis, hits=experiment.times, steps=trial.steps)
@@ -86,7 +86,7 @@ def predict(series, trial: Trial) -> Prediction:
         values = [one.reading.of(result) for one in experiment.measurements]
     except ComputationError as error:
         return Prediction(trial.number, np.full(experiment.count, np.nan), failure=str(error))
-    rows = result.history if isinstance(case.analysis, Transient) else []
+    rows = result.history if isinstance(analysis, TransientAnalysis) else []
     return Prediction(
         trial.number,
         np.concatenate(values),
@@ -187,9 +187,7 @@ class CaseModel:
             self._known[key] = self._computed([(values, [()] * len(self._experiments))])[0]
         return self._known[key]
 
-    def _beside(
-        self, values: np.ndarray, others: Sequence[np.ndarray]
-    ) -> list[list[Prediction]]:
+    def _beside(self, values: np.ndarray, others: Sequence[np.ndarray]) -> list[list[Prediction]]:
         steps = [one.steps if self._follows else () for one in self._at(values)]
         start = np.asarray(values, dtype=float).tobytes()
         keys = [start + np.asarray(other, dtype=float).tobytes() for other in others]

@@ -200,7 +200,11 @@ def _on_face(fields: InterfaceFields, name: str, places: dict[str, np.ndarray]) 
 
 
 def reading(
-    name: str, at: dict[str, np.ndarray], count: int, contact: str | None, densities: dict[int, float]
+    name: str,
+    at: dict[str, np.ndarray],
+    count: int,
+    contact: str | None,
+    densities: dict[int, float],
 ) -> Reading:
     """Reading of a quantity by its name in the results.
 

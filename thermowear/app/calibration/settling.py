@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...inference import Identifiability, ParameterSpace, settling
-from ...results.summary_keys import GROUPS
 from ...results.quantity import split_key
+from ...results.summary_keys import GROUPS
 from .forward import CaseModel
 
 _GROUPS = ("Loads and forces", "Pressure and contact", "Wear", "Heat and energy")

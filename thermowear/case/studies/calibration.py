@@ -165,7 +165,9 @@ class CalibrationTable(Section):
         for name, table in self.parameters.items():
             if table.key is not None:
                 number, unit = values[name], table.start.unit
-                found.append(f'{table.key}="{number!r} {unit}"' if unit else f"{table.key}={number!r}")
+                found.append(
+                    f'{table.key}="{number!r} {unit}"' if unit else f"{table.key}={number!r}"
+                )
         for key, text in self.set.items():
             filled = _IN_BRACES.sub(lambda m: repr(values[m[1]]), text)
             bare = _IN_BRACES.fullmatch(text) is not None

@@ -106,8 +106,8 @@ def _spread(value: Any) -> Spread:
         return value
     percent = _PERCENT.fullmatch(value) if isinstance(value, str) else None
     spread = Spread(relative=float(percent[1]) / 100) if percent else Spread(_scalar(value))
-    size = spread.relative if spread.absolute is None else spread.absolute.number
-    if not size > 0:
+    size = spread.absolute.number if spread.absolute is not None else spread.relative
+    if not (size or 0.0) > 0.0:
         raise ValueError(f"found {quoted(value)}; must be greater than 0")
     return spread
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
@@ -30,7 +31,8 @@ class InputTable(Section):
     mean, deviation : Scalar, Spread
         Of a normal distribution, which `lower` and `upper` may cut off.
     median, factor : Scalar, float
-        Of a lognormal distribution: 95 % lie between the median divided and multiplied by the factor.
+        Of a lognormal distribution: 95 % of the values lie between the median divided by the
+        factor, and multiplied by it.
     lower, mode, upper : Scalar
         Of uniform, loguniform and triangular distributions.
     """
@@ -59,7 +61,7 @@ class InputTable(Section):
         except ValueError as error:
             raise KeyFault(_NEEDED[kind][0], str(error)) from None
         order = [numbers[key] for key in ("lower", "mode", "upper") if key in numbers]
-        if any(not a <= b for a, b in zip(order, order[1:], strict=False)) or (
+        if any(not a <= b for a, b in pairwise(order)) or (
             len(order) > 1 and not order[0] < order[-1]
         ):
             raise KeyFault("upper", "must be greater than lower, with the mode between them")

@@ -38,13 +38,15 @@ _PNG = b"\x89PNG\r\n\x1a\n"
 _UNPRINTABLE = re.compile("[^\t\n\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
-def write_report(folder: Path) -> Path:
+def write_report(folder: Path, contents: dict[str, Any] | None = None) -> Path:
     """Write ``report.html``, one file with embedded pictures and style.
 
     Parameters
     ----------
     folder : Path
         Results of a run, finished or not.
+    contents : dict, optional
+        Variables of the template, by default those of a run (`read_contents`).
 
     Returns
     -------
@@ -57,7 +59,7 @@ def write_report(folder: Path) -> Path:
         If the folder has no results or a ``report.html`` of other origin, or cannot be written.
     """
     path = folder / "report.html"
-    text = page(read_contents(folder))
+    text = page(contents or read_contents(folder))
     if os.path.lexists(path) and not is_report(path):
         raise CaseError(
             f"{path}: exists and is not a report of this program; move it away or rename it"
@@ -157,12 +159,16 @@ def _toml(path: Path) -> tuple[str, dict[str, Any]]:
 def _pictures(folder: Path):
     contacts = dict.fromkeys(["", *contacts_of(folder)])
     for (name, caption), contact in product(PICTURES.items(), contacts):
-        path = folder / picture(name, contact)
-        content = path.read_bytes() if path.is_file() else b""
-        if content.startswith(_PNG):
-            encoded = base64.b64encode(content).decode("ascii")
-            where = f"Contact {contact}: {caption[0].lower()}{caption[1:]}" if contact else caption
-            yield {"name": path.stem, "caption": where, "data": encoded}
+        where = f"Contact {contact}: {caption[0].lower()}{caption[1:]}" if contact else caption
+        yield from embedded(folder / picture(name, contact), where)
+
+
+def embedded(path: Path, caption: str):
+    """Yield a picture of a report, unless there is none."""
+    content = path.read_bytes() if path.is_file() else b""
+    if content.startswith(_PNG):
+        encoded = base64.b64encode(content).decode("ascii")
+        yield {"name": path.stem, "caption": caption, "data": encoded}
 
 
 def _tables(folder: Path, summary: dict[str, Any]):

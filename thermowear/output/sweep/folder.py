@@ -19,8 +19,8 @@ _VARIANT = re.compile(r"\d{3,}")
 _INTERVAL = 1.0  # seconds between two updates of the table on disk
 
 
-_OF_PARTS = ("contacts", "holders", "bodies")
-"""Tables of a summary with numbers of the parts of a model of several bodies."""
+_OF_PARTS = ("contacts", "holders", "bodies", "probes")
+"""Tables of a summary with numbers of parts of a model."""
 
 
 class SweepFolder:

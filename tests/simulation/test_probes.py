@@ -155,9 +155,9 @@ def test_a_probe_is_worn_off():
 def of_disk():
     """Temperatures at probes in the block and in the disk."""
     points = (
-        "probes.block={point=['0.1 mm', '103 mm']}",
-        "probes.rim={point=['-1 mm', '98 mm']}",
-        "probes.deep={point=['30 mm', '60 mm'], body='disk'}",
+        "probes.block={point=['0.1 mm', '25 mm']}",
+        "probes.rim={point=['-1 mm', '19 mm']}",
+        "probes.deep={point=['10 mm', '5 mm'], body='disk'}",
     )
     small = ("mesh.degree=3", "mesh.elements=4", "heat.advection=none")
     found = tw.run(tw.load(DEMOS / "block_on_disk.toml", (*small, *points)))

@@ -19,7 +19,7 @@ _SCRIPTING = (
 )
 _LAZY = {
     **{"run": "simulation", "Result": "results", "Case": "case", "sweep": "app.sweeping"},
-    **dict.fromkeys(("calibrate", "plan"), "app.calibration.calibrate"),
+    **{"calibrate": "app.calibration.calibrate", "plan": "app.calibration.planning"},
     **dict.fromkeys(_SCRIPTING, "scripting"),
 }
 _ROOMS = (

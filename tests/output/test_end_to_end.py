@@ -105,7 +105,8 @@ HEADS = {
     "holders": "time_s,holder,normal_force_N,approach_m,tangential_force_N,"
     "tangential_displacement_m,moment_Nm,rotation_rad",
     "history": "time_s,sliding_distance_m,max_pressure_Pa,contact_area_m2,wear_volume_1_m3,"
-    "wear_volume_2_m3,max_temperature_K,approach_m,step_s,error",
+    "wear_volume_2_m3,max_temperature_K,approach_m,step_s,error,max_wear_1_m,max_wear_2_m,"
+    "friction_power_W,friction_force_N,friction_torque_Nm",
 }
 
 

@@ -314,7 +314,7 @@ def test_a_history_is_sampled(total, copy):
     """requirement: at most twenty rows, the first and the last among them."""
     folder = copy(RUNNING_IN)
     head = (folder / "history.csv").read_text(encoding="utf-8").splitlines()[0]
-    rows = [",".join(f"{n + 0.25 * k:g}" for k in range(1, 11)) for n in range(total)]
+    rows = [",".join(f"{n + 0.25 * k:g}" for k in range(1, 16)) for n in range(total)]
     half_a_row = "17.5,3"  # of a run that is writing
     text = "\n".join([head, *rows, half_a_row])
     (folder / "history.csv").write_text(text, encoding="utf-8")

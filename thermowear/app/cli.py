@@ -6,19 +6,18 @@ Exit codes: 0 done, 1 invalid case or command line, 2 failed computation, 130 in
 
 from __future__ import annotations
 
-import json
 import os
 import signal
 import sys
 import time
 import traceback
 import warnings
-from pathlib import Path
 
-from .. import load
 from ..errors import CaseError, CaseNote, ComputationError
 from ..interrupts import DeferredSignals
+from . import case_commands, folder_commands
 from .arguments import parser
+from .verifying import verify
 
 _INTERRUPTED = 130
 _DELIVERY_TIME = 1.0  # s; launchers may drop messages written just before a failing process ends
@@ -84,163 +83,6 @@ def _launched_processes() -> int:
     return int(os.environ.get("OMPI_COMM_WORLD_SIZE", os.environ.get("PMI_SIZE", "1")))
 
 
-def _cases(_) -> int:
-    from ..case.starters import starters
-
-    for name, title in starters().items():
-        print(f"{name:32} {title}")
-    return 0
-
-
-def _init(chosen) -> int:
-    from ..case.starters import starter_files, starter_text
-
-    path = chosen.output or Path(f"{chosen.name}.toml")
-    files = {path: starter_text(chosen.name).encode()}
-    files |= {path.parent / name: data for name, data in starter_files(chosen.name).items()}
-    for file in files:
-        _check_absent(file, chosen.overwrite)
-    for file, data in files.items():
-        try:
-            file.write_bytes(data)
-        except OSError as error:
-            raise CaseError(f"{file}: cannot be written: {error.strerror}") from None
-    print(f"wrote {' and '.join(map(str, files))}; next: python3 -m thermowear run {path}")
-    return 0
-
-
-def _validate(chosen) -> int:
-    case = load(chosen.case, tuple(chosen.overrides))
-    properties = [f"{case.analysis.type} analysis", case.geometry.type, case.model]
-    if case.geometry.from_file:
-        from ..geometry.checks.mesh_checks import described, whole_bodies
-
-        properties += described(whole_bodies(case.tagged_mesh(), case.geometry))
-    if case.initial_shapes:
-        from .batch.computing import start_petsc
-
-        start_petsc()
-        from mpi4py import MPI
-
-        from ..simulation.from_case import model_of
-        from ..simulation.system.building import check_contact_points
-
-        check_contact_points(model_of(case), MPI.COMM_SELF)
-        properties += [f"initial shape {shape}" for shape in case.initial_shapes]
-    print(f"{chosen.case}: ok ({', '.join(properties)})")
-    return 0
-
-
-def _mesh(chosen) -> int:
-    from ..geometry.checks.mesh_checks import whole_bodies
-    from ..geometry.mesh.mixed import count_cells
-    from ..geometry.reading.export import check_ending, write_mesh
-    from ..output.pictures import make_mesh_picture
-
-    is_picture = chosen.output.suffix == ".png"
-    if not is_picture:
-        check_ending(chosen.output)
-    case = load(chosen.case, tuple(chosen.overrides))
-    if is_picture and case.model != "3d":
-        raise CaseError(f"-o {chosen.output}: pictures of meshes require a 3d model")
-    _check_absent(chosen.output, chosen.overwrite)
-    if case.mesh.accuracy is not None:
-        from ..simulation.from_case import with_accurate_mesh
-        from .batch.computing import start_petsc
-
-        start_petsc()
-        case = with_accurate_mesh(case)
-    mesh = case.tagged_mesh()
-    if is_picture:
-        make_mesh_picture(whole_bodies(mesh, case.geometry), chosen.output)
-    else:
-        write_mesh(mesh, chosen.output)
-    print(f"wrote {chosen.output}: {count_cells(mesh)} cells, {len(mesh.points)} points")
-    return 0
-
-
-def _shape(chosen) -> int:
-    if _launched_processes() > 1:
-        raise CaseError("shape: runs in one process; start it without mpirun")
-    from .batch.computing import start_petsc
-    from .shaping import check_format, shape, write_shape
-
-    check_format(chosen.output)
-    start_petsc()
-    _check_absent(chosen.output, chosen.overwrite)
-    shaped = shape(chosen.case, chosen.body, tuple(chosen.overrides), chosen.face)
-    write_shape(shaped, chosen.output)
-    deepest = 1e6 * shaped.design.depth.max()
-    print(
-        f"wrote {chosen.output}: face of {shaped.body.name}, up to {deepest:.4g} µm to be removed"
-    )
-    return 0
-
-
-def _check_absent(path: Path, overwrite: bool) -> None:
-    if os.path.exists(path) and not overwrite:  # Path.exists raises an error for invalid names
-        raise CaseError(f"{path}: exists; use --overwrite or another name")
-
-
-def _plot(chosen) -> int:
-    from ..output.calibration import draw_calibration, is_calibration
-    from ..output.pictures import make_pictures
-    from ..output.sweep import draw_sweep, is_sweep
-
-    try:
-        draw = draw_sweep if is_sweep(chosen.folder) else make_pictures
-        draw = draw_calibration if is_calibration(chosen.folder) else draw
-        problems = draw(chosen.folder)
-    except (OSError, ValueError) as error:
-        raise CaseError(str(error)) from None
-    for problem in problems:
-        print(f"note: {problem}", file=sys.stderr)
-    return 0
-
-
-def _animate(chosen) -> int:
-    from ..output.pictures import make_animation
-
-    path = chosen.output or chosen.folder / "animation.gif"
-    try:
-        make_animation(chosen.folder, path, chosen.fps)
-    except (OSError, ValueError) as error:
-        raise CaseError(str(error)) from None
-    print(f"wrote {path}")
-    return 0
-
-
-def _report(chosen) -> int:
-    from ..output.calibration import is_calibration, write_calibration_report
-    from ..output.report import write_report
-
-    write = write_calibration_report if is_calibration(chosen.folder) else write_report
-    print(f"wrote {write(chosen.folder)}")
-    return 0
-
-
-def _verify(chosen) -> int:
-    from ..output.console import Terminal, print_checks
-    from ..verification import CASES, SLOW, all_checks
-
-    unknown = [name for name in chosen.ids if name not in CASES]
-    if unknown:
-        raise CaseError(f"verify {unknown[0]}: unknown case; one of: {', '.join(CASES)}")
-    left_out = [] if chosen.ids or chosen.slow else [name for name in CASES if name in SLOW]
-    names = chosen.ids or [name for name in CASES if name not in left_out]
-    checks = [check for name in names for check in all_checks(name, CASES[name])]
-    if chosen.json:
-        print(json.dumps([check.as_row() for check in checks], indent=2, ensure_ascii=False))
-    else:
-        print_checks(Terminal(highlight=False), checks)
-    if left_out:
-        print(
-            f"note: slow cases not computed: {', '.join(left_out)} (use --slow or their names)",
-            file=sys.stderr,
-        )
-    return 0 if all(check.passed for check in checks) else ComputationError.exit_code
-
-
 def _run(chosen) -> int:
     """Run a case, the only command on several MPI ranks.
 
@@ -292,18 +134,23 @@ def _batch(chosen, run) -> int:
     return run(chosen)
 
 
-_ALL = (
-    _run,
-    _sweep,
-    _calibrate,
-    _cases,
-    _init,
-    _validate,
-    _mesh,
-    _shape,
-    _verify,
-    _plot,
-    _animate,
-    _report,
-)
-_COMMANDS = {command.__name__[1:]: command for command in _ALL}
+def _shape(chosen) -> int:
+    if _launched_processes() > 1:
+        raise CaseError("shape: runs in one process; start it without mpirun")
+    return case_commands.shape(chosen)
+
+
+_COMMANDS = {
+    "run": _run,
+    "sweep": _sweep,
+    "calibrate": _calibrate,
+    "cases": case_commands.cases,
+    "init": case_commands.init,
+    "validate": case_commands.validate,
+    "mesh": case_commands.mesh,
+    "shape": _shape,
+    "verify": verify,
+    "plot": folder_commands.plot,
+    "animate": folder_commands.animate,
+    "report": folder_commands.report,
+}

@@ -13,6 +13,7 @@ from ..laws.time_course import LoadHistory, TimeFunction
 from .body import Body, Material
 from .conditions import Heat, Holder, Motion
 from .interface import Interface
+from .probe import Probe
 from .tie import Tie, glued_bodies
 
 Solver = Literal["auto", "direct", "multigrid"]
@@ -98,6 +99,7 @@ class Model:
     discretisation : Discretisation
     ties : tuple of Tie
         Glued faces.
+    probes : tuple of Probe
     heat : Heat or None
         None: isothermal.
     thickness : float or None
@@ -126,6 +128,7 @@ class Model:
     symmetry: tuple[str, ...] = ()
     title: str = ""
     ties: tuple[Tie, ...] = ()
+    probes: tuple[Probe, ...] = ()
 
     def __post_init__(self):
         if not self.interfaces or not self.holders:

@@ -104,8 +104,9 @@ _OF_PARTS = {
     ),
     "holders": ("approach_m", "tangential_force_N", "rigid_wear_velocity_m_per_s"),
     "bodies": ("contact_heat_W", "friction_torque_Nm", "wear_volume_m3"),
+    "probes": ("temperature_K",),
 }
-"""Numbers of the parts of a model of several bodies that are printed."""
+"""Numbers of parts of a model that are printed."""
 _SMALLEST_SHOWN = 1e-3
 """Smallest error estimate shown as a number [%]; errors of quadrature are far below."""
 
@@ -116,7 +117,7 @@ def print_summary(console: Console, summary: dict, seconds: dict[str, float]) ->
     for label, value in _highlights(summary):
         numbers.add_row(label, value)
     console.print(numbers)
-    for kind in ("contacts", "holders", "bodies"):
+    for kind in _OF_PARTS:
         parts = summary.get(kind, {})
         keys = [k for k in _OF_PARTS[kind] if any(part.get(k) for part in parts.values())]
         if keys:

@@ -76,7 +76,8 @@ class ResultsFolder:
         self.path = path
         contacts = tables.get("contacts", {}).items()
         names = [name for name, table in contacts if not table.get("tie")]
-        self._run = run_started(ranks=ranks, **({"contacts": names} if names else {}))
+        named = {"contacts": names, "probes": list(tables.get("probes", {}))}
+        self._run = run_started(ranks=ranks, **{key: of for key, of in named.items() if of})
         self._rows: dict[str, RowWriter] = {}
         self._made = not os.path.exists(path)  # Path.exists raises an error for invalid names
         try:

@@ -21,6 +21,7 @@ from .rows import (
     HistoryRow,
     HolderRow,
     LoadRow,
+    ProbeRow,
     StickRow,
     TangentialRow,
 )

@@ -17,6 +17,7 @@ from .rows import (
     HistoryRow,
     HolderRow,
     LoadRow,
+    ProbeRow,
     StickRow,
     TangentialRow,
 )
@@ -204,6 +205,8 @@ class Result:
         Contacts of several bodies at the steps of a transient analysis.
     hot_spots : HotSpots or None
         Results of a stability analysis with hot spots.
+    probe_history : list of ProbeRow
+        Temperatures at the probes at the steps of a transient analysis.
     """
 
     interface: InterfaceFields
@@ -220,6 +223,7 @@ class Result:
     contacts: dict[str, slice] = field(default_factory=dict)
     contact_history: list[ContactRow] = field(default_factory=list)
     hot_spots: HotSpots | None = None
+    probe_history: list[ProbeRow] = field(default_factory=list)
 
     def tables(self) -> dict[str, Any]:
         """Tables by the names of their files without ``.csv``: points at the end, or rows.
@@ -227,7 +231,7 @@ class Result:
         Those of the points of several contacts end in the name of the contact.
         """
         friction, at_points = self.friction, list[Any]([self.interface, self.profile])
-        rows: list = [self.history, self.heat, self.contact_history]
+        rows: list = [self.history, self.heat, self.contact_history, self.probe_history]
         if self.modes is not None:
             at_points.append(self.modes)
         if friction is not None:

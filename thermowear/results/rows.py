@@ -90,6 +90,23 @@ class ContactRow:
 
 
 @table(
+    "probes",
+    "Probes, one row per probe and step",
+    "temperatures at the probes: one row per time step and probe",
+    grows=True,
+)
+class ProbeRow:
+    """Temperature at a probe at the end of a step; NaN once its point has been worn off.
+
+    Probes are numbered in the order of the case, as listed in ``run.json``.
+    """
+
+    time: float = as_in(HistoryRow)
+    probe: int = column("probe", meaning="number, in the order of the case")
+    temperature: float = column("temperature", "K", "°C", "at a probe")
+
+
+@table(
     "cycles",
     "Cycles, one row per computed cycle",
     "fretting with wear: one row per computed cycle, with length and error of the cycle jump",

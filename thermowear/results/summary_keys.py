@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from .quantity import Quantity, from_key, table_of
-from .rows import CycleRow, HeatRow, HistoryRow, LoadRow, TangentialRow
+from .rows import CycleRow, HeatRow, HistoryRow, LoadRow, ProbeRow, TangentialRow
 
-_history, _heat, _loads, _cycles, _tangential = (
-    table_of(kind).columns for kind in (HistoryRow, HeatRow, LoadRow, CycleRow, TangentialRow)
+_history, _heat, _loads, _cycles, _tangential, _probes = (
+    table_of(kind).columns
+    for kind in (HistoryRow, HeatRow, LoadRow, CycleRow, TangentialRow, ProbeRow)
 )
 OTHER = "Other"
 
@@ -85,6 +86,7 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
     ),
     "Heat and energy": (
         _history["max_temperature"],
+        _probes["temperature"],
         from_key("peak_temperature_K", "peak surface temperature", "°C"),
         from_key("peak_temperature_time_s", "time of the peak temperature"),
         _heat["friction_power"].shown_in("W"),

@@ -18,7 +18,7 @@ _MOST = 32
 """Largest number of cases in a chunk: results arrive, and can be resumed from, chunk by chunk."""
 
 
-class Work(Protocol):
+class BatchWork(Protocol):
     """Computation of one case, as a picklable callable.
 
     It returns an outcome that can be pickled. Errors that it raises end the batch.
@@ -86,7 +86,7 @@ class _Slot:
 
 def compute(
     groups: Sequence[Sequence[Any]],
-    work: Work,
+    work: BatchWork,
     received: Callable[[Any], None],
     executor: Executor | None = None,
     workers: int = 1,
@@ -99,7 +99,7 @@ def compute(
     groups : sequence of sequence
         Tasks by group; those of a group share set-up results. Idle workers take over half of the
         largest group.
-    work : Work
+    work : BatchWork
     received : callable
         Called with each outcome.
     executor : Executor, optional
@@ -126,7 +126,9 @@ def compute(
 class _Distribution:
     """Distribution of groups of tasks to the workers of an executor."""
 
-    def __init__(self, groups, work: Work, received: Callable[[Any], None], executor: Executor):
+    def __init__(
+        self, groups, work: BatchWork, received: Callable[[Any], None], executor: Executor
+    ):
         self._groups = sorted(map(list, groups), key=len, reverse=True)
         self._work, self._received, self._executor = work, received, executor
         self._running: dict[Future, tuple[_Slot, list]] = {}
@@ -215,7 +217,7 @@ _SERIES: list = []
 """Series of a worker process, which keeps the last set-up results for the chunks to come."""
 
 
-def compute_chunk(tasks: list, work: Work, series=None) -> _Done:
+def compute_chunk(tasks: list, work: BatchWork, series=None) -> _Done:
     """Compute tasks one after the other, in this process, by default with the series it keeps."""
     began, outcomes = time.perf_counter(), []
     try:

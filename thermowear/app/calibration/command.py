@@ -14,7 +14,8 @@ from ...errors import CaseError
 from ...output.calibration import CalibrationFolder, draw_calibration, write_calibration_report
 from ...output.console import Terminal
 from ..batch.executors import Choice, Crew
-from .calibrate import Calibration, Planned, calibrate, plan
+from .calibrate import Calibration, calibrate
+from .planning import Planned, plan
 from .record import record_of, record_of_plan, rows_of
 
 _PARALLEL = 1000

@@ -20,7 +20,7 @@ _SMOOTH, _ROUGH = 1e-4, 2e-2
 
 
 @dataclass(frozen=True)
-class Trial:
+class CandidateRun:
     """Run of an experiment with values of the parameters.
 
     Attributes
@@ -66,7 +66,7 @@ class Prediction:
     failure: str = ""
 
 
-def predict(series, trial: Trial) -> Prediction:
+def predict(series, trial: CandidateRun) -> Prediction:
     """Run a trial; see `batch.computing.Work`."""
     from ...simulation.from_case import analysis_of, model_of, with_accurate_mesh
 
@@ -203,7 +203,7 @@ class CaseModel:
         m = len(self._experiments)
         groups = [
             [
-                Trial(j * m + k, experiment, overrides_of(self._table, values), steps[k])
+                CandidateRun(j * m + k, experiment, overrides_of(self._table, values), steps[k])
                 for j, (values, steps) in enumerate(wanted)
             ]
             for k, experiment in enumerate(self._experiments)

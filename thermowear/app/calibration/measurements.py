@@ -1,4 +1,4 @@
-"""Measured data from CSV files, with their uncertainty and what they correspond to."""
+"""Measured data from CSV files, with their deviations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a measurement corresponds to in the results of a run."""
+"""Readings: quantities of the results that measurements correspond to."""
 
 from __future__ import annotations
 

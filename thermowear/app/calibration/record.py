@@ -8,8 +8,9 @@ import numpy as np
 
 from ...case.studies.calibration import CalibrationTable
 from ...inference import JointNormal, linear_band
-from .calibrate import Calibration, Planned
+from .calibrate import Calibration
 from .measurements import Measurement
+from .planning import Planned
 
 
 def record_of(found: Calibration) -> dict[str, Any]:

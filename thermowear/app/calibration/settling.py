@@ -104,3 +104,14 @@ def _is_measured(name: str) -> bool:
         for quantity in GROUPS[group]
     }
     return name in known and not any(word in name for word in _NOT_MEASURED)
+
+
+def undetermined(found: Identifiability, further: tuple[Suggestion, ...]) -> list[str]:
+    """Sentences on parameters that are not determined, and on what would determine them."""
+    if found.identified:
+        return []
+    names = ", ".join(found.undetermined)
+    known = "; ".join(one.text for one in found.combinations)
+    only = f"but {known} only" if known else "nor any combination of them"
+    text = f"the data do not determine {names} one by one, {only}"
+    return [text, *(f"this would settle it: {one.text}" for one in further)]

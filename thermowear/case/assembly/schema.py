@@ -14,6 +14,7 @@ from ..tables.analyses import Fretting, Initial, Reciprocating, Stability, Stead
 from ..tables.conditions import HeatTable
 from ..tables.contact import InterfaceTable
 from ..tables.materials import Properties, cell_sets, located_material
+from ..tables.probes import ProbeTable
 from ..tables.schema import MeshTable, check_size
 from ..tables.tabulated import TimeHistory
 from ..tables.wear import WearTable
@@ -55,6 +56,7 @@ class AssemblyCase(Section):
     motions: dict[str, BodyMotionTable] = {}
     wear: WearTable = WearTable()
     heat: HeatTable | None = None
+    probes: dict[str, ProbeTable] = {}
     analysis: Annotated[
         Initial | Steady | Transient | Fretting | Reciprocating | Stability,
         Field(discriminator="type"),

@@ -70,7 +70,7 @@ class ParameterTable(Section):
 
 
 class ObservationTable(Section):
-    """Measured data and what they correspond to.
+    """Measured data, and the quantity that they correspond to.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Table ``study``: distributions of uncertain inputs, and how they are sampled."""
+"""Table ``study``: distributions of uncertain inputs, and their sampling."""
 
 from __future__ import annotations
 

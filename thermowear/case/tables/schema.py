@@ -22,6 +22,7 @@ from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
 from .contact import ContactTable, InterfaceTable
 from .geometry_choice import AnyGeometry
 from .materials import BodyTable, Properties, cell_sets, located_material, part_named
+from .probes import ProbeTable
 from .tabulated import TimeHistory
 from .wear import WearTable
 
@@ -133,6 +134,7 @@ class Case(Section):
     contact: ContactTable = ContactTable()
     wear: WearTable = WearTable()
     heat: HeatTable | None = None
+    probes: dict[str, ProbeTable] = {}
     analysis: Annotated[
         Initial | Steady | Transient | Fretting | Reciprocating | Stability,
         Field(discriminator="type"),

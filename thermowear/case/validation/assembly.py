@@ -19,6 +19,7 @@ from .conditions import heat_in_time, heated_surfaces
 from .layer_wear import layer_wear
 from .mesh_sizes import mesh_sizes
 from .part_wear import note_default_per, part_wear
+from .probes import probes
 
 
 def check(case: AssemblyCase) -> None:
@@ -147,6 +148,7 @@ _CHECKS = (
     _carried,
     _heat,
     mesh_sizes,
+    probes,
     cyclic_assembly.unsupported,
     cyclic_assembly.fretting,
     cyclic_assembly.reciprocating,

@@ -16,6 +16,7 @@ from .cyclic_assembly import NO_DIRECTION
 from .layer_wear import layer_wear
 from .mesh_sizes import mesh_sizes
 from .part_wear import note_default_per, part_wear
+from .probes import probes
 
 _SLIDING = ("steady", "transient", "reciprocating")
 """Analyses of wear by sliding."""
@@ -222,4 +223,5 @@ _CHECKS = (
     _in_space,
     _moving_mesh,
     _symmetry,
+    probes,
 )

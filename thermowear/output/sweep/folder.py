@@ -27,8 +27,8 @@ _INTERVAL, _SHARE = 1.0, 0.05
 """Least interval between two updates of the table on disk [s], and their largest share of time."""
 
 
-_OF_PARTS = ("contacts", "holders", "bodies")
-"""Tables of a summary with numbers of the parts of a model of several bodies."""
+_OF_PARTS = ("contacts", "holders", "bodies", "probes")
+"""Tables of a summary with numbers of parts of a model."""
 
 
 class SweepFolder:

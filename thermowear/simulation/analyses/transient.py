@@ -10,10 +10,11 @@ import numpy as np
 from ...balances import ALLOWED, require
 from ...errors import ComputationError
 from ...model.analyses import TransientAnalysis
-from ...results import ContactRow, HeatRow, HistoryRow
+from ...results import ContactRow, HeatRow, HistoryRow, ProbeRow
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.wider_zone import ends_outside_zone
 from ..heat.friction_heat import FrictionHeat
+from ..heat.probes import probe_rows
 from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
@@ -94,7 +95,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         if self.loop.now.problem.heat is not None and own is not None:
             self.loop.now.problem.heat.steps.restore(own)
 
-    def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow | ContactRow]:
+    def rows_of(self, state: Moment) -> list[HistoryRow | HeatRow | ContactRow | ProbeRow]:
         problem = self.loop.now.problem
         conditions = problem.conditions(state.state, state.time)
         speed = self._mean(conditions.speed)
@@ -102,7 +103,8 @@ class TransientHistory(AnalysisHistory[Moment]):
         self._speed = speed
         row = self._row(state, slid, conditions)
         self._note_lost_layers(conditions, state, slid, row)
-        each = self._contact_rows(conditions, state)
+        each: list[ContactRow | ProbeRow] = self._contact_rows(conditions, state)
+        each += self._probe_rows(state)
         if problem.heat is None or not problem.stores_heat:
             return [row, *each]
         heat = self._heat_row(state, conditions, problem.heat)
@@ -255,7 +257,7 @@ class TransientHistory(AnalysisHistory[Moment]):
             mean_temperature_2=self._mean(T2),
         )
 
-    def _contact_rows(self, conditions: InterfaceConditions, moment: Moment) -> list[ContactRow]:
+    def _contact_rows(self, conditions: InterfaceConditions, moment: Moment) -> list:
         """Rows of the contacts of several bodies."""
         if self._is_pair:
             return []
@@ -263,6 +265,15 @@ class TransientHistory(AnalysisHistory[Moment]):
         ambient = float("nan") if now.problem.heat is None else now.problem.heat.ambient
         pressing = self._force_per_pressure(conditions)
         return contact_rows(now.system, conditions, moment.state, moment.time, ambient, pressing)
+
+    def _probe_rows(self, moment: Moment) -> list[ProbeRow]:
+        """Rows of the probes; every rank calls."""
+        problem, state = self.loop.now.problem, moment.state
+        if not problem.system.model.probes:
+            return []
+        stored = state.stored
+        field = problem.contact_state(state, moment.time).temperatures if stored is None else stored
+        return [] if field is None else probe_rows(problem.system, field.rise, moment.time)
 
     def _force_per_pressure(self, conditions: InterfaceConditions) -> np.ndarray:
         """Normal force per pressure at the points (n,) [m²]; those of the last conditions kept."""

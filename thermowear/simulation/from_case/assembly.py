@@ -22,7 +22,7 @@ from ...model.model import Discretisation, Model, Zone
 from ...model.relative_motion import relative_motion
 from ...model.tie import Tie, glued_bodies, with_glued
 from ...model.tracks import EvenTrack, Track
-from .model import attributes, conductance, material
+from .model import attributes, conductance, material, probes_of
 from .wear import body_wear
 
 
@@ -45,6 +45,7 @@ def assembly_of(case: AssemblyCase) -> Model:
         symmetry=tuple(surface for body in case.bodies.values() for surface in body.symmetry),
         title=case.title,
         ties=ties,
+        probes=probes_of(case.probes),
     )
 
 

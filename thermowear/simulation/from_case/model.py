@@ -13,6 +13,7 @@ from ...case.tables.conditions import AxisTable
 from ...case.tables.geometry import Geometry
 from ...case.tables.laws import PressureConductanceTable, TabulatedConductanceTable, law_of
 from ...case.tables.materials import Properties
+from ...case.tables.probes import ProbeTable
 from ...case.tables.schema import Case, MeshTable
 from ...case.tables.tabulated import (
     ExpansionTable,
@@ -33,6 +34,7 @@ from ...model.conditions import Heat, Holder, Motion
 from ...model.face_wear import Wear
 from ...model.interface import ContactMethod, HardnessConductance, Interface
 from ...model.model import Discretisation, Model, Zone
+from ...model.probe import Probe
 from ...model.tracks import CircularTrack, EvenTrack, PinTrack, TabulatedTrack, Track
 from .wear import body_wear
 
@@ -52,7 +54,13 @@ def pair_of(case: Case) -> Model:
         sector=geometry.sector,
         symmetry=geometry.symmetry,
         title=case.title,
+        probes=probes_of(case.probes),
     )
+
+
+def probes_of(tables: Mapping[str, ProbeTable]) -> tuple[Probe, ...]:
+    """Probes from their tables."""
+    return tuple(Probe(name, **attributes(Probe, table)) for name, table in tables.items())
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from ...model.conditions import Holder
 from ...model.interface import Interface
 from ...model.model import Model
 from ...results import Result
+from ..heat.probes import probe_temperatures
 from ..system.fluid import fluid_forces
 from ..system.rigid_modes import guides, loads_on
 from ..system.system import System
@@ -64,6 +65,7 @@ def summarise(end: Snapshot, time: float) -> dict:
         "heat_balance_relative_error": None if heated is None else float(heated.error),
         "equilibrium_relative_error": end.bodies.force_error,
         **_prescribed(end, time),
+        **_probes(end),
         **_passing(end, time),
     }
     turned = replace(end, system=system.with_friction(end.contact.conditions.friction))
@@ -184,6 +186,16 @@ def _conducted(end: Snapshot, own: slice) -> dict[str, float]:
         return {}
     into = (float(end.system.weights[own] @ flux[own]) for flux in heated.faces.flux)
     return {f"contact_heat_{side}_W": heat for side, heat in enumerate(into, 1)}
+
+
+def _probes(end: Snapshot) -> dict[str, dict]:
+    """Temperatures at the probes by name, if there are any; every rank calls."""
+    system, heated = end.system, end.bodies.temperatures
+    if not system.model.probes or heated is None:
+        return {}
+    each = zip(system.model.probes, probe_temperatures(system, heated.rise), strict=True)
+    known = ((probe.name, None if np.isnan(T) else float(T)) for probe, T in each)
+    return {"probes": {name: {"temperature_K": T} for name, T in known}}
 
 
 def _prescribed(end: Snapshot, time: float) -> dict[str, float]:

@@ -21,6 +21,7 @@ from ...results import (
     HistoryRow,
     HolderRow,
     LoadRow,
+    ProbeRow,
     Result,
     StickRow,
     TangentialRow,
@@ -32,7 +33,6 @@ from ..system.system import System
 from .observer import AnyRow, Observer, Progress, Saved
 
 Row = TypeVar("Row", bound=AnyRow)
-
 
 State = TypeVar("State", bound=Any)
 """Accepted state of an analysis.
@@ -242,6 +242,7 @@ class AnalysisHistory(ABC, Generic[State]):
             track=track,
             heat=self.table(HeatRow),
             contact_history=self.table(ContactRow),
+            probe_history=self.table(ProbeRow),
             stopped=stopped,
         )
 

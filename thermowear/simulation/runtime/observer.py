@@ -21,6 +21,7 @@ from ...results import (
     HotSpotRow,
     InterfaceFields,
     LoadRow,
+    ProbeRow,
     StickRow,
     TangentialRow,
     WornTrack,
@@ -29,7 +30,15 @@ from ...serialise import serialisable
 from ..system.system import System
 
 TimedRow = (
-    HistoryRow | HeatRow | ContactRow | LoadRow | CycleRow | StickRow | HolderRow | TangentialRow
+    HistoryRow
+    | HeatRow
+    | ContactRow
+    | ProbeRow
+    | LoadRow
+    | CycleRow
+    | StickRow
+    | HolderRow
+    | TangentialRow
 )
 AnyRow = TimedRow | HotSpotRow | GrowthRow
 

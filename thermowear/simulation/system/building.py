@@ -41,6 +41,7 @@ from .contact_points import (
     worn_contact_points,
 )
 from .face_regions import divided_faces, require_regions
+from .probe_points import probe_points
 from .rigid_modes import dead_load, dead_resultant, load_direction, rigid_modes
 from .setup_cache import SetupCache, inputs
 from .system import System
@@ -151,7 +152,9 @@ def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) ->
         _check_held(model, mesh)
         return mesh
 
-    return distribute(on_root(comm, held, share=False), comm)
+    bodies = distribute(on_root(comm, held, share=False), comm)
+    probe_points(model, bodies, worn is not None)  # reports points outside early
+    return bodies
 
 
 def _check_held(model: Model, mesh: AnyMesh) -> None:

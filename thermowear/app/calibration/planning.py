@@ -1,0 +1,92 @@
+"""Accuracy to be expected of planned measurements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...case import AnyCase
+from ...case.studies.calibration import CalibrationTable
+from ...errors import ComputationError
+from ...inference import (
+    Identifiability,
+    MeasurementDesign,
+    central_jacobian,
+    expected_accuracy,
+    identify,
+)
+from .measurements import Measurement
+from .problem import Problem
+from .settling import Suggestion, suggestions, undetermined
+
+
+@dataclass(frozen=True)
+class Planned:
+    """Accuracy of the parameters to be expected of planned measurements.
+
+    Attributes
+    ----------
+    table : CalibrationTable
+    measurements : tuple of Measurement
+    values : ndarray, shape (p,)
+        Values of the parameters that are assumed, the first ones.
+    predicted, deviations : ndarray, shape (n,)
+        Predictions and standard deviations of the measurements [SI].
+    jacobian : ndarray, shape (n, p)
+        Derivatives of the predictions in internal coordinates.
+    design : MeasurementDesign
+    identifiability : Identifiability
+    suggestions : tuple of Suggestion
+    """
+
+    table: CalibrationTable
+    measurements: tuple[Measurement, ...]
+    values: np.ndarray
+    predicted: np.ndarray
+    deviations: np.ndarray
+    jacobian: np.ndarray
+    design: MeasurementDesign
+    identifiability: Identifiability
+    suggestions: tuple[Suggestion, ...]
+
+    def notes(self) -> list[str]:
+        """Sentences on what the measurements would not determine."""
+        return undetermined(self.identifiability, self.suggestions)
+
+
+def plan(
+    case: AnyCase | str | Path,
+    data: Mapping[str, str | Path] | str | Path | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+) -> Planned:
+    """Predict how well measurements would determine the parameters, before any is made.
+
+    The files need the times or places and the deviations only. Parameters as of `calibrate`.
+    """
+    problem = Problem.of(case, data, planned=True)
+    model, space = problem.model(executor, workers), problem.space
+    predicted = model.predict(space.start)
+    if not np.isfinite(predicted).all():
+        raise ComputationError(f"calibrate: the run failed: {model.failure(space.start)}")
+    deviations, labels = problem.weights
+    deviations = np.where(np.isnan(deviations), problem.relative * np.abs(predicted), deviations)
+    internal = space.internal(space.start)
+    jacobian = central_jacobian(space, model, internal, predicted)
+    noise = problem.noise(model)
+    identified = identify(space, jacobian / deviations[:, None], noise)
+    return Planned(
+        problem.table,
+        tuple(problem.measurements),
+        space.start,
+        predicted,
+        deviations,
+        jacobian,
+        expected_accuracy(space, internal, jacobian, deviations, labels, noise),
+        identified,
+        suggestions(space, model, space.start, identified),
+    )

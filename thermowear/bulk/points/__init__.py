@@ -1,0 +1,1 @@
+"""Values of fields at points of the bodies."""

@@ -129,7 +129,8 @@ class CaseModel:
     def _find_times(self) -> None:
         """Times of the measurements at sliding distances, from a run with the first values."""
         first = np.array([p.start.number for p in self._table.parameters.values()])
-        for k, one in enumerate(self._at(first)):
+        found = self._at(first)
+        for k, one in enumerate(found):
             if self._experiments[k].needs_times():
                 if one.failure:
                     raise ComputationError(one.failure)
@@ -137,4 +138,6 @@ class CaseModel:
                     raise CaseError("calibrate: sliding distances need a transient analysis")
                 time = np.array([0.0, *one.steps])
                 self._experiments[k] = self._experiments[k].at_distances(time, one.distances)
-        self._known.clear()
+        runs = zip(self._experiments, found, strict=True)
+        if not all(set(one.times) <= set(run.steps[-1:]) for one, run in runs):
+            self._known.clear()  # the steps of those runs ended elsewhere

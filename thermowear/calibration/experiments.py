@@ -15,6 +15,9 @@ from ..errors import CaseError
 from .measurement import Measurement
 
 _OTHER = ("calibrate", "study", "title")
+_STEADY = ("distance_from_steady", "rigid_wear_")
+"""Numbers of the summary that refer to the steady state."""
+_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,11 @@ class Experiment:
             {"time", "sliding_distance"} & one.reading.at.keys() for one in self.measurements
         )
 
+    def compares_with_steady(self) -> bool:
+        """Test whether a measured quantity refers to the steady state that a run approaches."""
+        names = (one.reading.name.rpartition(".")[2] for one in self.measurements)
+        return any(name.startswith(_STEADY) for name in names)
+
     def at_distances(self, time: np.ndarray, distance: np.ndarray) -> Experiment:
         """Experiment whose steps hit the measured sliding distances, too.
 
@@ -68,7 +76,8 @@ class Experiment:
         """
         wanted = [m.reading.at.get("sliding_distance", np.zeros(0)) for m in self.measurements]
         found = np.interp(np.concatenate(wanted), distance, time)  # exact at a constant speed
-        return replace(self, times=_distinct([*self.times, *found]))
+        found[np.isclose(found, time[-1], rtol=_ROUNDING, atol=0.0)] = time[-1]
+        return replace(self, times=_distinct([*self.times, *map(float, found)]))
 
 
 def experiments(case: AnyCase, measurements: Sequence[Measurement]) -> list[Experiment]:

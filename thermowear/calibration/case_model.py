@@ -43,7 +43,7 @@ class CaseModel:
         runner: Runner,
     ):
         self._table, self._experiments, self._runner = table, list(experiments), runner
-        self._known: dict[bytes, list[Prediction]] = {}
+        self._known: dict[str, list[Prediction]] = {}
         self._follows = True
         self.runs = 0
         if any(one.needs_times() for one in experiments):
@@ -96,15 +96,14 @@ class CaseModel:
         return next((one.failure for one in self._at(values) if one.failure), "")
 
     def _at(self, values: np.ndarray) -> list[Prediction]:
-        key = np.asarray(values, dtype=float).tobytes()
+        key = _key(values)
         if key not in self._known:
             self._known[key] = self._computed([(values, [()] * len(self._experiments))])[0]
         return self._known[key]
 
     def _beside(self, values: np.ndarray, others: Sequence[np.ndarray]) -> list[list[Prediction]]:
         steps = [one.steps if self._follows else () for one in self._at(values)]
-        start = np.asarray(values, dtype=float).tobytes()
-        keys = [start + np.asarray(other, dtype=float).tobytes() for other in others]
+        keys = [_key(values, other) for other in others]
         new = [k for k, key in enumerate(keys) if key not in self._known]
         computed = self._computed([(others[k], steps) for k in new])
         self._known |= {keys[k]: found for k, found in zip(new, computed, strict=True)}
@@ -141,3 +140,8 @@ class CaseModel:
         runs = zip(self._experiments, found, strict=True)
         if not all(set(one.times) <= set(run.steps[-1:]) for one, run in runs):
             self._known.clear()  # the steps of those runs ended elsewhere
+
+
+def _key(*points: np.ndarray) -> str:
+    """Key of runs at values of the parameters, common to values that agree to rounding."""
+    return " ".join(f"{value:.13e}" for values in points for value in values)

@@ -225,7 +225,7 @@ def fit(
     )
 
 
-class _NearOptimum(Exception):  # noqa: N818
+class _NearOptimum(Exception):
     """End of a search at internal coordinates near the optimum."""
 
     def __init__(self, internal: np.ndarray):

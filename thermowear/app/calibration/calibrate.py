@@ -95,8 +95,9 @@ class _Distributed:
 
         def received(outcome: Prediction | Lost) -> None:
             if isinstance(outcome, Lost):
-                outcome = outcome.task.failed(outcome.reason)
-            found.append(outcome)
+                found.append(outcome.task.failed(outcome.reason))
+            else:
+                found.append(outcome)
 
         compute(groups, predict, received, self._executor, self._workers)
         return found

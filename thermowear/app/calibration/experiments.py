@@ -15,6 +15,8 @@ from ...errors import CaseError
 from .measurements import Measurement
 
 _OTHER = ("calibrate", "study", "title")
+_EQUAL = 1e-9
+"""Relative difference of times that are hit by one step."""
 
 
 @dataclass(frozen=True)
@@ -28,11 +30,14 @@ class Experiment:
     measurements : tuple of Measurement
     times : tuple of float
         Times that the steps hit exactly [s].
+    located : bool
+        False until the times of all sliding distances are known.
     """
 
     tables: dict[str, Any]
     measurements: tuple[Measurement, ...]
     times: tuple[float, ...] = ()
+    located: bool = True
 
     @property
     def count(self) -> int:
@@ -48,13 +53,9 @@ class Experiment:
         """
         return load(self.tables, overrides)
 
-    def needs_times(self) -> bool:
-        """Test whether times of measurements at sliding distances are not known yet."""
-        return any("sliding_distance" in one.reading.at for one in self.measurements)
-
     def ends_with_times(self) -> bool:
         """Test whether nothing is measured at the end of the run, but all at given times."""
-        return bool(self.times) and all(
+        return self.located and all(
             {"time", "sliding_distance"} & one.reading.at.keys() for one in self.measurements
         )
 
@@ -68,7 +69,7 @@ class Experiment:
         """
         wanted = [m.reading.at.get("sliding_distance", np.zeros(0)) for m in self.measurements]
         found = np.interp(np.concatenate(wanted), distance, time)  # exact at a constant speed
-        return replace(self, times=_distinct([*self.times, *found]))
+        return replace(self, times=_distinct([*self.times, *found]), located=True)
 
 
 def experiments(case: AnyCase, measurements: Sequence[Measurement]) -> list[Experiment]:
@@ -118,11 +119,17 @@ def _experiment(case: AnyCase, members: list[Measurement]) -> Experiment:
                 "analysis ends before (analysis.end_time)"
             )
         tables = tables | {"analysis": analysis}
-    return Experiment(tables, tuple(members), _distinct(times))
+    located = not any("sliding_distance" in one.reading.at for one in members)
+    return Experiment(tables, tuple(members), _distinct(times), located)
 
 
 def _distinct(times: Sequence[float]) -> tuple[float, ...]:
-    return tuple(sorted({t for t in times if t > 0.0}))
+    """Times in order, without the start and without those that are equal up to rounding [s]."""
+    found: list[float] = []
+    for time in sorted(times):
+        if time > (found[-1] * (1 + _EQUAL) if found else 0.0):
+            found.append(time)
+    return tuple(found)
 
 
 def overrides_of(table: CalibrationTable, values: np.ndarray) -> tuple[str, ...]:

@@ -132,7 +132,7 @@ class CaseModel:
         self._known: dict[bytes, list[Prediction]] = {}
         self._follows = True
         self.runs = 0
-        if any(one.needs_times() for one in experiments):
+        if not all(one.located for one in experiments):
             self._find_times()
 
     @property
@@ -225,7 +225,7 @@ class CaseModel:
         """Times of the measurements at sliding distances, from a run with the first values."""
         first = np.array([p.start.number for p in self._table.parameters.values()])
         for k, one in enumerate(self._at(first)):
-            if self._experiments[k].needs_times():
+            if not self._experiments[k].located:
                 if one.failure:
                     raise ComputationError(one.failure)
                 if not len(one.distances):

@@ -64,7 +64,7 @@ def test_wear_and_friction_from_volumes_and_torque(tmp_path):
 
 
 def test_wear_and_friction_from_volumes_alone(tmp_path):
-    """requirement F3: the combination that worn volumes determine, and a measurement that settles it."""
+    """requirement F3: the combination that volumes determine, and a measurement that settles it."""
     path = volumes(tmp_path / "d.csv", truth(), 0.02)
     found = calibrated(path, parameters={"k": WEAR, "mu": FRICTION})
     (combination,) = found.identifiability.combinations
@@ -227,5 +227,5 @@ def test_cases_that_do_not_fit(tmp_path):
     path = volumes(tmp_path / "d.csv", truth())
     stopped = tables(parameters={"k": WEAR})
     stopped["analysis"]["max_steps"] = 2
-    with pytest.raises(tw.ComputationError, match="first values failed.*max_steps"):
+    with pytest.raises(tw.ComputationError, match=r"first values failed.*max_steps"):
         tw.calibrate(tw.load(stopped), path)

@@ -36,6 +36,9 @@ def starter_files(name: str) -> dict[str, bytes]:
     CaseError
         If no starter case has this name.
     """
-    geometry = tomllib.loads(starter_text(name))["geometry"]
-    paths = [geometry["path"]] if "path" in geometry else geometry.get("paths", {}).values()
+    tables = tomllib.loads(starter_text(name))
+    geometry = tables["geometry"]
+    paths = [geometry["path"]] if "path" in geometry else [*geometry.get("paths", {}).values()]
+    observations = tables.get("calibrate", {}).get("observations", {}).values()
+    paths += [own["file"] for own in observations if "file" in own]
     return {path: (resources.files(__name__) / path).read_bytes() for path in paths}

@@ -35,12 +35,12 @@ def draw_calibration(folder: Path) -> list[str]:
         If the folder contains no calibration.
     """
     record, rows = read_calibration(folder)
+    if record.get("planned"):
+        return []
     groups: dict[str, list[dict[str, str]]] = {}
     for row in rows:
         groups.setdefault(row["observation"], []).append(row)
     observed = [_Group(label, members) for label, members in groups.items()]
-    if record.get("planned"):
-        return []
     _draw_fit(observed, folder / "fit.png")
     _draw_residuals(observed, folder / "residuals.png")
     known = [k for k, one in enumerate(record["parameters"].values()) if _is_known(one)]

@@ -25,6 +25,7 @@ ORDER = [
     "model",
     "results",
     "simulation",
+    "calibration",
     "verification",
     "output",
     "scripting",
@@ -42,11 +43,12 @@ NOT_ALLOWED = {
     },
     "geometry": {"dolfinx", "petsc4py", "mpi4py", "ufl"},
     "results": {"dolfinx", "gmsh", "meshio", "petsc4py", "mpi4py", "ufl", "basix", "matplotlib"},
+    "calibration": {"dolfinx", "gmsh", "petsc4py", "mpi4py", "ufl", "basix", "matplotlib"},
     "output": {"dolfinx", "petsc4py", "ufl", "basix", "gmsh"},
     "app": {"dolfinx", "ufl", "basix", "gmsh"},
 }
 BARE = {
-    "output": {"simulation", "verification", "contact", "bulk", "laws", "model"},
+    "output": {"simulation", "calibration", "verification", "contact", "bulk", "laws", "model"},
     "reference": {"case"},
     "inference": {"laws", "case", "reference"},
     "results": {"laws", "case", "reference", "geometry", "bulk", "contact", "model"},

@@ -19,11 +19,12 @@ _SCRIPTING = (
 )
 _LAZY = {
     **{"run": "simulation", "Result": "results", "Case": "case", "sweep": "app.sweeping"},
-    **{"calibrate": "app.calibration.calibrate", "plan": "app.calibration.planning"},
+    **dict.fromkeys(("calibrate", "plan"), "app.calibration.calibrate"),
     **dict.fromkeys(_SCRIPTING, "scripting"),
 }
 _ROOMS = (
     "bulk",
+    "calibration",
     "case",
     "contact",
     "geometry",

@@ -1,107 +1,20 @@
-"""Calibration of the parameters of a case by measured data."""
+"""Calibration of a case by data files, and plans of measurements."""
 
 from __future__ import annotations
 
-import time
-from collections.abc import Mapping
+import os
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from ...case import AnyCase
-from ...case.studies.calibration import CalibrationTable
-from ...errors import ComputationError
-from ...inference import (
-    Fit,
-    Identifiability,
-    JointNormal,
-    Observations,
-    Posterior,
-    fit,
-    identify,
-    sample_posterior,
-)
-from .measurements import Measurement
-from .problem import Problem
-from .settling import Suggestion, suggestions, undetermined
-
-_UNLIKELY = 1e-3
-"""Probability of residuals from which on they are reported as too large."""
-
-
-@dataclass(frozen=True)
-class Calibration:
-    """Parameters of a case as data determine them.
-
-    Attributes
-    ----------
-    table : CalibrationTable
-    measurements : tuple of Measurement
-    fit : Fit
-    identifiability : Identifiability
-    suggestions : tuple of Suggestion
-        Measurements that would determine what these do not.
-    posterior : Posterior or None
-    runs : int
-        Number of runs of the case.
-    seconds : float
-        Wall time.
-    """
-
-    table: CalibrationTable
-    measurements: tuple[Measurement, ...]
-    fit: Fit
-    identifiability: Identifiability
-    suggestions: tuple[Suggestion, ...]
-    posterior: Posterior | None
-    runs: int
-    seconds: float
-
-    @property
-    def normal(self) -> JointNormal:
-        """Distribution of the parameters, by the given deviations or by the scatter."""
-        estimated = self.table.deviations == "estimated"
-        return self.fit.scattered if estimated else self.fit.uncertainty
-
-    @property
-    def values(self) -> dict[str, float]:
-        """Values of the parameters by name, in the units of their start."""
-        return dict(zip(self.table.parameters, map(float, self.fit.values), strict=True))
-
-    def intervals(self, level: float | None = None) -> dict[str, tuple[float, float]]:
-        """Confidence intervals by name; infinite for parameters that are not determined."""
-        found = self.normal.intervals(level or self.table.confidence)
-        pairs = ((float(low), float(high)) for low, high in found)
-        return dict(zip(self.table.parameters, pairs, strict=True))
-
-    @property
-    def standard_errors(self) -> dict[str, float]:
-        """Standard errors by name, relative ones of logarithmic parameters."""
-        errors = map(float, self.normal.standard_errors)
-        return dict(zip(self.table.parameters, errors, strict=True))
-
-    @property
-    def overrides(self) -> tuple[str, ...]:
-        """Changes ``KEY=VALUE`` that give the case the calibrated values."""
-        return self.table.overrides(self.values)
-
-    def notes(self) -> list[str]:
-        """Sentences on what the data do not determine, and on a fit that is not good."""
-        found = [] if self.fit.converged else [f"the fit has {self.fit.message}"]
-        found += [f"{name} ended at a bound" for name in self.fit.at_bounds]
-        found += undetermined(self.identifiability, self.suggestions)
-        p_value = self.fit.p_value
-        if self.table.deviations == "known" and p_value < _UNLIKELY:
-            found.append(
-                f"the residuals are larger than the deviations explain (reduced chi² "
-                f"{self.fit.reduced_chi2:.3g}, p = {p_value:.1g}): the model or the deviations "
-                'are not right; deviations = "estimated" takes them from the scatter'
-            )
-        if self.posterior is not None and self.posterior.warning:
-            found.append(self.posterior.warning)
-        return found
+from ...calibration.candidate_run import CandidateRun, InProcess, Prediction, Runner, predict
+from ...calibration.planning import Planned, expected
+from ...calibration.problem import Problem
+from ...calibration.solution import Calibration, solve
+from ...case import AnyCase, load
+from ...errors import CaseError
+from ..batch.computing import Lost, compute, new_series
+from .measurements import read_measurements
 
 
 def calibrate(
@@ -130,37 +43,74 @@ def calibrate(
     ComputationError
         If a run with the first values fails.
     """
-    began, problem = time.perf_counter(), Problem.of(case, data)
-    model = problem.model(executor, workers)
-    observations = Observations(
-        np.concatenate([one.values for one in problem.measurements]), *problem.weights
-    )
-    start = problem.space.start
-    if reason := (model.failure(start) if not np.isfinite(model.predict(start)).all() else ""):
-        raise ComputationError(f"calibrate: the run with the first values failed: {reason}")
-    table = problem.table
-    search = table.tolerance, table.max_evaluations, problem.noise(model)
-    found = fit(problem.space, observations, model, *search)
-    identified = identify(problem.space, found.jacobian, found.noise)
-    further = suggestions(problem.space, model, found.values, identified)
-    posterior = None
-    if table.posterior is not None:
-        chosen, best = table.posterior, found.values
-        posterior = sample_posterior(
-            found,
-            lambda points: model.neighbours(best, points),
-            chosen.steps,
-            chosen.walkers or 0,
-            chosen.seed,
-        )
-    seconds = time.perf_counter() - began
-    return Calibration(
-        table,
-        tuple(problem.measurements),
-        found,
-        identified,
-        further,
-        posterior,
-        model.runs,
-        seconds,
-    )
+    return solve(problem_of(case, data), runner(executor, workers))
+
+
+def plan(
+    case: AnyCase | str | Path,
+    data: Mapping[str, str | Path] | str | Path | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+) -> Planned:
+    """Predict how well measurements would determine the parameters, before any is made.
+
+    The files need the times or places and the deviations only. Parameters as of `calibrate`.
+    """
+    return expected(problem_of(case, data, planned=True), runner(executor, workers))
+
+
+def problem_of(
+    case: AnyCase | str | Path,
+    data: Mapping[str, str | Path] | str | Path | None = None,
+    planned: bool = False,
+) -> Problem:
+    """Problem of a case and its data files, as of `calibrate`.
+
+    Raises
+    ------
+    CaseError
+    """
+    case = case if isinstance(case, AnyCase) else load(case)
+    if case.calibrate is None:
+        raise CaseError("calibrate: missing; the table names parameters and observations")
+    return Problem.of(case, read_measurements(case, _files(case, data), planned))
+
+
+def runner(executor: Executor | None = None, workers: int | None = None) -> Runner:
+    """Runner in this process, or on an executor."""
+    if executor is None:
+        return InProcess(new_series())
+    return _Distributed(executor, workers or len(os.sched_getaffinity(0)))
+
+
+class _Distributed:
+    """Runner on an executor; a run whose process dies has failed."""
+
+    def __init__(self, executor: Executor, workers: int):
+        self._executor, self._workers = executor, workers
+
+    def __call__(self, groups: Sequence[Sequence[CandidateRun]]) -> list[Prediction]:
+        """Compute runs on all workers."""
+        found: list[Prediction] = []
+
+        def received(outcome: Prediction | Lost) -> None:
+            if isinstance(outcome, Lost):
+                outcome = outcome.task.failed(outcome.reason)
+            found.append(outcome)
+
+        compute(groups, predict, received, self._executor, self._workers)
+        return found
+
+
+def _files(case: AnyCase, data) -> dict[str, Path]:
+    """Data files by the name of the observation."""
+    if data is None:
+        return {}
+    if isinstance(data, Mapping):
+        return {name: Path(path) for name, path in data.items()}
+    assert case.calibrate is not None
+    open_ = [name for name, own in case.calibrate.observations.items() if own.file is None]
+    path = Path(data)
+    if len(open_) > 1:
+        raise CaseError(f"--data {path}: several observations have no file: write NAME={path}")
+    return {open_[0] if open_ else path.stem: path}

@@ -9,13 +9,14 @@ import numpy as np
 from rich.table import Table
 
 from ... import load
+from ...calibration.planning import Planned
+from ...calibration.solution import Calibration
 from ...case import AnyCase, as_plain
 from ...errors import CaseError
 from ...output.calibration import CalibrationFolder, draw_calibration, write_calibration_report
 from ...output.console import Terminal
 from ..batch.executors import Choice, Crew
-from .calibrate import Calibration, calibrate
-from .planning import Planned, plan
+from .calibrate import calibrate, plan
 from .record import record_of, record_of_plan, rows_of
 
 _PARALLEL = 1000

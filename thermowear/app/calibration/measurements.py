@@ -2,52 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from ...calibration.measurement import Measurement
+from ...calibration.readings import PLACES, known_quantities, reading
 from ...case import AnyCase
 from ...case.studies.calibration import ObservationTable
 from ...case.values.csv_columns import Columns, column_names, read_columns
 from ...case.values.units import parse, registry, unit_of
 from ...errors import CaseError
 from ..batch.variants import written
-from .readings import PLACES, Reading, known_quantities, reading
 
 _AT = {**dict.fromkeys(PLACES, "mm"), "time": "s", "sliding_distance": "m", "cycle": ""}
 """Columns of times and places, with a suitable unit."""
 _SI = {key: {"mm": "m"}.get(unit, unit) for key, unit in _AT.items()}
 _DEVIATION = "deviation"
 _MASS = {f"worn_mass_{k}": "g" for k in (1, 2)}
-
-
-@dataclass(frozen=True)
-class Measurement:
-    """Values of one quantity, measured in one experiment.
-
-    Attributes
-    ----------
-    label : str
-        Name of the observation, with the quantity where a file has several.
-    reading : Reading
-    values, deviations : ndarray, shape (n,)
-        Values and standard deviations [SI]; NaN where only a measurement is planned, deviations if
-        they are relative.
-    relative : float
-        Relative deviation of a planned measurement.
-    changes : tuple of str
-        Keys of the case that had other values, as ``KEY=VALUE``.
-    file : str
-    """
-
-    label: str
-    reading: Reading
-    values: np.ndarray
-    deviations: np.ndarray
-    changes: tuple[str, ...]
-    file: str
-    relative: float = 0.0
 
 
 def read_measurements(

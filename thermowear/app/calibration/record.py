@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from ...calibration.measurement import Measurement
+from ...calibration.planning import Planned
+from ...calibration.solution import Calibration
 from ...case.studies.calibration import CalibrationTable
 from ...inference import JointNormal, linear_band
-from .calibrate import Calibration
-from .measurements import Measurement
-from .planning import Planned
 
 
 def record_of(found: Calibration) -> dict[str, Any]:

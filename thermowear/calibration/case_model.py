@@ -3,113 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import Executor
-from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...case.studies.calibration import CalibrationTable
-from ...errors import CaseError, ComputationError
-from ...model.analyses import TransientAnalysis
-from ..batch.computing import Lost, compute, new_series
+from ..case.studies.calibration import CalibrationTable
+from ..errors import CaseError, ComputationError
+from .candidate_run import CandidateRun, Prediction, Runner
 from .experiments import Experiment, other_conditions, overrides_of
-from .readings import summary_numbers
 
 _SMOOTH, _ROUGH = 1e-4, 2e-2
 """Steps of finite differences with the same time steps, and of runs with steps of their own."""
-
-
-@dataclass(frozen=True)
-class CandidateRun:
-    """Run of an experiment with values of the parameters.
-
-    Attributes
-    ----------
-    number : int
-    experiment : Experiment
-    overrides : tuple of str
-        Changes of the case, ``KEY=VALUE``.
-    steps : tuple of float
-        Ends of the time steps [s]; empty for error control.
-    """
-
-    number: int
-    experiment: Experiment
-    overrides: tuple[str, ...]
-    steps: tuple[float, ...] = ()
-
-
-@dataclass(frozen=True)
-class Prediction:
-    """Predictions of a trial.
-
-    Attributes
-    ----------
-    number : int
-    values : ndarray, shape (n,)
-        Predicted values of the measurements [SI]; NaN if the run failed.
-    steps : tuple of float
-        Ends of the time steps [s].
-    distances : ndarray, shape (n_steps,)
-        Sliding distances at the start and at these times [m].
-    numbers : dict of str to float
-        Numbers of the summary.
-    failure : str
-        Reason why there are none.
-    """
-
-    number: int
-    values: np.ndarray
-    steps: tuple[float, ...] = ()
-    distances: np.ndarray = field(default_factory=lambda: np.zeros(0))
-    numbers: dict[str, float] = field(default_factory=dict)
-    failure: str = ""
-
-
-def predict(series, trial: CandidateRun) -> Prediction:
-    """Run a trial; see `batch.computing.Work`."""
-    from ...simulation.from_case import analysis_of, model_of, with_accurate_mesh
-
-    experiment = trial.experiment
-    try:
-        case = with_accurate_mesh(experiment.case(trial.overrides), series.comm)
-        analysis = analysis_of(case)
-        if isinstance(analysis, TransientAnalysis):
-            if experiment.ends_with_times():
-                analysis = replace(analysis, end_time=max(experiment.times), until=None)
-            analysis = replace(analysis, hits=experiment.times, steps=trial.steps)
-        result = series.run(model_of(case), analysis)
-        if isinstance(result.stopped, KeyboardInterrupt):
-            raise result.stopped
-        if result.stopped is not None:
-            raise result.stopped
-        values = [one.reading.of(result) for one in experiment.measurements]
-    except ComputationError as error:
-        return Prediction(trial.number, np.full(experiment.count, np.nan), failure=str(error))
-    rows = result.history if isinstance(analysis, TransientAnalysis) else []
-    return Prediction(
-        trial.number,
-        np.concatenate(values),
-        tuple(row.time for row in rows[1:]),
-        np.array([row.sliding_distance for row in rows]),
-        summary_numbers(result.summary),
-    )
 
 
 class CaseModel:
     """Predictions of all measurements of a case, see `inference.forward.ForwardModel`.
 
     Predictions at neighbouring parameters take the time steps of the one that they are compared
-    with, so that finite differences are smooth, and are computed side by side by an executor.
+    with, so that finite differences are smooth, and may be computed side by side.
 
     Parameters
     ----------
     table : CalibrationTable
     experiments : sequence of Experiment
-    executor : Executor, optional
-        By default runs are computed in this process.
-    workers : int
-        Number of workers of the executor.
+    runner : Runner
+        Computation of the runs.
 
     Attributes
     ----------
@@ -123,12 +40,9 @@ class CaseModel:
         self,
         table: CalibrationTable,
         experiments: Sequence[Experiment],
-        executor: Executor | None = None,
-        workers: int = 1,
+        runner: Runner,
     ):
-        self._table, self._experiments = table, list(experiments)
-        self._executor, self._workers = executor, workers
-        self._series = None if executor is not None else new_series()
+        self._table, self._experiments, self._runner = table, list(experiments), runner
         self._known: dict[bytes, list[Prediction]] = {}
         self._follows = True
         self.runs = 0
@@ -173,7 +87,7 @@ class CaseModel:
     def with_other_conditions(self) -> dict[str, CaseModel]:
         """Models of the first experiment at other loads and speeds, by the path of the key."""
         return {
-            key: CaseModel(self._table, [one], self._executor, self._workers)
+            key: CaseModel(self._table, [one], self._runner)
             for key, one in other_conditions(self._experiments[0]).items()
         }
 
@@ -208,16 +122,7 @@ class CaseModel:
             ]
             for k, experiment in enumerate(self._experiments)
         ]
-        found: dict[int, Prediction] = {}
-
-        def received(outcome: Prediction | Lost) -> None:
-            if isinstance(outcome, Lost):
-                trial = outcome.task
-                nothing = np.full(trial.experiment.count, np.nan)
-                outcome = Prediction(trial.number, nothing, failure=outcome.reason)
-            found[outcome.number] = outcome
-
-        compute(groups, predict, received, self._executor, self._workers, self._series)
+        found = {one.number: one for one in self._runner(groups)}
         self.runs += len(found)
         return [[found[j * m + k] for k in range(m)] for j in range(len(wanted))]
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator, PchipInterpolator
 
-from ...errors import CaseError, ComputationError
-from ...results import Result
-from ...results.points import InterfaceFields, part_of
-from ...results.quantity import TABLES, Quantity, split_key, table_of
-from ...results.summary_keys import of_key
+from ..errors import CaseError, ComputationError
+from ..results import Result
+from ..results.points import InterfaceFields, part_of
+from ..results.quantity import TABLES, Quantity, split_key, table_of
+from ..results.summary_keys import of_key
 
 ALONG = ("time", "sliding_distance", "cycle")
 """Columns that rows of a history are found by."""
@@ -145,7 +145,7 @@ def known_quantities() -> dict[str, Quantity]:
     for table in TABLES.values():
         for name, quantity in table.columns.items():
             found.setdefault(name, quantity)
-    from ...results.summary_keys import GROUPS
+    from ..results.summary_keys import GROUPS
 
     for group in GROUPS.values():
         for quantity in group:

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping
-from concurrent.futures import Executor
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
-from ...case import AnyCase, load
-from ...case.studies.calibration import CalibrationTable
-from ...errors import CaseError
-from ...inference import Normal, Parameter, ParameterSpace
-from ...inference.jacobian import NOISE
+from ..case import AnyCase
+from ..case.studies.calibration import CalibrationTable
+from ..inference import Normal, Parameter, ParameterSpace
+from ..inference.jacobian import NOISE
+from .candidate_run import Runner
+from .case_model import CaseModel
 from .experiments import experiments
-from .forward import CaseModel
-from .measurements import Measurement, read_measurements
+from .measurement import Measurement
 
 _ROUGH_NOISE = 0.05
 """Noise of derivatives, relative to the largest, of runs with time steps of their own."""
@@ -33,19 +30,14 @@ class Problem:
     measurements: list[Measurement]
 
     @classmethod
-    def of(cls, case, data, planned: bool = False) -> Problem:
-        """Read the case and the data."""
-        case = case if isinstance(case, AnyCase) else load(case)
-        if case.calibrate is None:
-            raise CaseError("calibrate: missing; the table names parameters and observations")
-        measurements = read_measurements(case, _files(case, data), planned)
-        return cls(case, case.calibrate, _space(case.calibrate), measurements)
+    def of(cls, case: AnyCase, measurements: Sequence[Measurement]) -> Problem:
+        """Problem of a case with the table ``calibrate``."""
+        assert case.calibrate is not None
+        return cls(case, case.calibrate, _space(case.calibrate), list(measurements))
 
-    def model(self, executor: Executor | None, workers: int | None) -> CaseModel:
-        """Forward model."""
-        count = workers or len(os.sched_getaffinity(0))
-        made = experiments(self.case, self.measurements)
-        return CaseModel(self.table, made, executor, count)
+    def model(self, runner: Runner) -> CaseModel:
+        """Forward model, whose runs a runner computes."""
+        return CaseModel(self.table, experiments(self.case, self.measurements), runner)
 
     def noise(self, model: CaseModel) -> float:
         """Relative noise of the derivatives."""
@@ -62,20 +54,6 @@ class Problem:
         """Relative deviations of all planned values."""
         each = [np.full(len(one.values), one.relative) for one in self.measurements]
         return np.concatenate(each)
-
-
-def _files(case: AnyCase, data) -> dict[str, Path]:
-    """Data files by the name of the observation."""
-    if data is None:
-        return {}
-    if isinstance(data, Mapping):
-        return {name: Path(path) for name, path in data.items()}
-    assert case.calibrate is not None
-    open_ = [name for name, own in case.calibrate.observations.items() if own.file is None]
-    path = Path(data)
-    if len(open_) > 1:
-        raise CaseError(f"--data {path}: several observations have no file: write NAME={path}")
-    return {open_[0] if open_ else path.stem: path}
 
 
 def _space(table: CalibrationTable) -> ParameterSpace:

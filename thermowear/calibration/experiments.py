@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ...case import AnyCase, as_plain, load
-from ...case.studies.calibration import CalibrationTable
-from ...case.tables.analyses import Timed
-from ...errors import CaseError
-from .measurements import Measurement
+from ..case import AnyCase, as_plain, load
+from ..case.studies.calibration import CalibrationTable
+from ..case.tables.analyses import Timed
+from ..errors import CaseError
+from .measurement import Measurement
 
 _OTHER = ("calibrate", "study", "title")
 _EQUAL = 1e-9

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from concurrent.futures import Executor
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-from ...case import AnyCase
-from ...case.studies.calibration import CalibrationTable
-from ...errors import ComputationError
-from ...inference import (
+from ..case.studies.calibration import CalibrationTable
+from ..errors import ComputationError
+from ..inference import (
     Identifiability,
     MeasurementDesign,
     central_jacobian,
     expected_accuracy,
     identify,
 )
-from .measurements import Measurement
+from .candidate_run import Runner
+from .measurement import Measurement
 from .problem import Problem
 from .settling import Suggestion, suggestions, undetermined
 
@@ -58,18 +55,17 @@ class Planned:
         return undetermined(self.identifiability, self.suggestions)
 
 
-def plan(
-    case: AnyCase | str | Path,
-    data: Mapping[str, str | Path] | str | Path | None = None,
-    executor: Executor | None = None,
-    workers: int | None = None,
-) -> Planned:
+def expected(problem: Problem, runner: Runner) -> Planned:
     """Predict how well measurements would determine the parameters, before any is made.
 
-    The files need the times or places and the deviations only. Parameters as of `calibrate`.
+    Raises
+    ------
+    CaseError
+        If the measurements do not fit the case.
+    ComputationError
+        If a run fails.
     """
-    problem = Problem.of(case, data, planned=True)
-    model, space = problem.model(executor, workers), problem.space
+    model, space = problem.model(runner), problem.space
     predicted = model.predict(space.start)
     if not np.isfinite(predicted).all():
         raise ComputationError(f"calibrate: the run failed: {model.failure(space.start)}")

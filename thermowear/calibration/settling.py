@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...inference import Identifiability, ParameterSpace, settling
-from ...results.quantity import split_key
-from ...results.summary_keys import GROUPS
-from .forward import CaseModel
+from ..inference import Identifiability, ParameterSpace, settling
+from ..results.quantity import split_key
+from ..results.summary_keys import GROUPS
+from .case_model import CaseModel
 
 _GROUPS = ("Loads and forces", "Pressure and contact", "Wear", "Heat and energy")
 _NOT_MEASURED = ("error", "balance", "dissipation", "distance_from", "rigid_wear", "min_pressure")

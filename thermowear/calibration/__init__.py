@@ -1,0 +1,1 @@
+"""Calibration: parameters of a case that fit measurements, by runs of the case."""

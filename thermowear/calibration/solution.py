@@ -1,0 +1,146 @@
+"""Calibration of the parameters of a case by measured data."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..case.studies.calibration import CalibrationTable
+from ..errors import ComputationError
+from ..inference import (
+    Fit,
+    Identifiability,
+    JointNormal,
+    Observations,
+    Posterior,
+    fit,
+    identify,
+    sample_posterior,
+)
+from .candidate_run import Runner
+from .measurement import Measurement
+from .problem import Problem
+from .settling import Suggestion, suggestions, undetermined
+
+_UNLIKELY = 1e-3
+"""Probability of residuals from which on they are reported as too large."""
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """Parameters of a case as data determine them.
+
+    Attributes
+    ----------
+    table : CalibrationTable
+    measurements : tuple of Measurement
+    fit : Fit
+    identifiability : Identifiability
+    suggestions : tuple of Suggestion
+        Measurements that would determine what these do not.
+    posterior : Posterior or None
+    runs : int
+        Number of runs of the case.
+    seconds : float
+        Wall time.
+    """
+
+    table: CalibrationTable
+    measurements: tuple[Measurement, ...]
+    fit: Fit
+    identifiability: Identifiability
+    suggestions: tuple[Suggestion, ...]
+    posterior: Posterior | None
+    runs: int
+    seconds: float
+
+    @property
+    def normal(self) -> JointNormal:
+        """Distribution of the parameters, by the given deviations or by the scatter."""
+        estimated = self.table.deviations == "estimated"
+        return self.fit.scattered if estimated else self.fit.uncertainty
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Values of the parameters by name, in the units of their start."""
+        return dict(zip(self.table.parameters, map(float, self.fit.values), strict=True))
+
+    def intervals(self, level: float | None = None) -> dict[str, tuple[float, float]]:
+        """Confidence intervals by name; infinite for parameters that are not determined."""
+        found = self.normal.intervals(level or self.table.confidence)
+        pairs = ((float(low), float(high)) for low, high in found)
+        return dict(zip(self.table.parameters, pairs, strict=True))
+
+    @property
+    def standard_errors(self) -> dict[str, float]:
+        """Standard errors by name, relative ones of logarithmic parameters."""
+        errors = map(float, self.normal.standard_errors)
+        return dict(zip(self.table.parameters, errors, strict=True))
+
+    @property
+    def overrides(self) -> tuple[str, ...]:
+        """Changes ``KEY=VALUE`` that give the case the calibrated values."""
+        return self.table.overrides(self.values)
+
+    def notes(self) -> list[str]:
+        """Sentences on what the data do not determine, and on a fit that is not good."""
+        found = [] if self.fit.converged else [f"the fit has {self.fit.message}"]
+        found += [f"{name} ended at a bound" for name in self.fit.at_bounds]
+        found += undetermined(self.identifiability, self.suggestions)
+        p_value = self.fit.p_value
+        if self.table.deviations == "known" and p_value < _UNLIKELY:
+            found.append(
+                f"the residuals are larger than the deviations explain (reduced chi² "
+                f"{self.fit.reduced_chi2:.3g}, p = {p_value:.1g}): the model or the deviations "
+                'are not right; deviations = "estimated" takes them from the scatter'
+            )
+        if self.posterior is not None and self.posterior.warning:
+            found.append(self.posterior.warning)
+        return found
+
+
+def solve(problem: Problem, runner: Runner) -> Calibration:
+    """Find the parameters that fit the measurements best, and their uncertainty.
+
+    Raises
+    ------
+    CaseError
+        If the measurements do not fit the case.
+    ComputationError
+        If a run with the first values fails.
+    """
+    began, model = time.perf_counter(), problem.model(runner)
+    observations = Observations(
+        np.concatenate([one.values for one in problem.measurements]), *problem.weights
+    )
+    start = problem.space.start
+    if reason := (model.failure(start) if not np.isfinite(model.predict(start)).all() else ""):
+        raise ComputationError(f"calibrate: the run with the first values failed: {reason}")
+    table = problem.table
+    search = table.tolerance, table.max_evaluations, problem.noise(model)
+    found = fit(problem.space, observations, model, *search)
+    identified = identify(problem.space, found.jacobian, found.noise)
+    further = suggestions(problem.space, model, found.values, identified)
+    posterior = None
+    if table.posterior is not None:
+        chosen, best = table.posterior, found.values
+        posterior = sample_posterior(
+            found,
+            lambda points: model.neighbours(best, points),
+            chosen.steps,
+            chosen.walkers or 0,
+            chosen.seed,
+        )
+    seconds = time.perf_counter() - began
+    return Calibration(
+        table,
+        tuple(problem.measurements),
+        found,
+        identified,
+        further,
+        posterior,
+        model.runs,
+        seconds,
+    )

@@ -94,9 +94,8 @@ class _Distributed:
         found: list[Prediction] = []
 
         def received(outcome: Prediction | Lost) -> None:
-            if isinstance(outcome, Lost):
-                outcome = outcome.task.failed(outcome.reason)
-            found.append(outcome)
+            lost = isinstance(outcome, Lost)
+            found.append(outcome.task.failed(outcome.reason) if lost else outcome)
 
         compute(groups, predict, received, self._executor, self._workers)
         return found

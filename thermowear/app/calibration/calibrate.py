@@ -94,8 +94,10 @@ class _Distributed:
         found: list[Prediction] = []
 
         def received(outcome: Prediction | Lost) -> None:
-            lost = isinstance(outcome, Lost)
-            found.append(outcome.task.failed(outcome.reason) if lost else outcome)
+            if isinstance(outcome, Lost):
+                found.append(outcome.task.failed(outcome.reason))
+            else:
+                found.append(outcome)
 
         compute(groups, predict, received, self._executor, self._workers)
         return found

@@ -4,8 +4,8 @@ The table of each sweep is compared with that of one that nothing came in betwee
 
     THERMOWEAR_WITH=studies scripts/env python3 -m tests.benchmarks.many_variants [--variants 1000]
 
-A quarter of the variants has no equilibrium: their rows have a message. The memory is that of the process
-that distributes, and of the largest worker, sampled while the sweep runs.
+A quarter of the variants has no equilibrium: their rows have a message. The memory is that of the
+process that distributes, and of the largest worker, sampled while the sweep runs.
 """
 
 from __future__ import annotations

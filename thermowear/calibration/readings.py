@@ -12,7 +12,6 @@ from ..errors import CaseError, ComputationError
 from ..results import Result
 from ..results.points import InterfaceFields, part_of
 from ..results.quantity import TABLES, Quantity, split_key, table_of
-from ..results.summary_keys import of_key
 
 ALONG = ("time", "sliding_distance", "cycle")
 """Columns that rows of a history are found by."""
@@ -229,5 +228,5 @@ def reading(
         mass = Quantity(f"{name}_kg", f"worn mass, body {body}", "kg", "kg")
         return Reading(mass, volume, count, at, contact, densities[body])
     known = known_quantities()
-    quantity = known.get(name) or (known.get("temperature_1") if at else None) or of_key(name)
+    quantity = known.get(name) or Quantity(f"{name}_K", f"temperature, {name}", "K", "°C")
     return Reading(quantity, name, count, at, contact)

@@ -89,7 +89,9 @@ def _quantity(header: str, values: np.ndarray) -> Quantity:
     """Quantity by its header, in a unit that suits its values."""
     known = {q.header: q for table in TABLES.values() for q in table.columns.values()}
     found = known.get(header) or of_key(header)
-    if found.unit in ("°C", "1"):
+    if found.si == "K":
+        return found.shown_in("°C")
+    if found.unit == "1":
         return found
     unit = multiple(found.si, float(np.nanmax(np.abs(values))))[0]
     return from_key(header, found.label, unit)
@@ -181,6 +183,8 @@ def _draw_parameters(
                     _draw_pair(axis, column, row, covariance[np.ix_([j, i], [j, i])], values)
                     if j == 0:
                         axis.set_ylabel(row.label)
+                    else:
+                        axis.tick_params(labelleft=False)
                 if i == count - 1:
                     axis.set_xlabel(column.label)
 

@@ -25,11 +25,10 @@ from PIL import Image
 from slides import SLIDES, Slide, draw_slide
 from studies import STUDIES, Study, draw_study
 
+from thermowear.case.starters import command_for
 from thermowear.output.report.figures import figure_text
 
 HERE = Path(__file__).resolve().parent
-COMMANDS = ("calibrate", "study")
-"""Commands with a table of their own, by which the cases that have it are computed."""
 CHOICES = (
     ("hot_spots_3d", "fit", "tornado", "bodies"),
     ("hot_spots", "mode", "heat", "track", "cycles", "wear", "friction", "profile", "interface"),
@@ -110,14 +109,9 @@ def main() -> int:
 
 def compute(case: Path, folder: Path) -> int:
     """Compute a case in a separate process; returns its exit code."""
-    command = [sys.executable, "-m", "thermowear", command_for(case), str(case), "-o", str(folder)]
+    made_for = command_for(case.read_text(encoding="utf-8"))
+    command = [sys.executable, "-m", "thermowear", made_for, str(case), "-o", str(folder)]
     return subprocess.run([*command, "--overwrite"], check=False).returncode
-
-
-def command_for(case: Path) -> str:
-    """Command that a case is made for."""
-    tables = tomllib.loads(case.read_text(encoding="utf-8"))
-    return next((name for name in COMMANDS if name in tables), "run")
 
 
 def write_gallery(
@@ -217,7 +211,7 @@ def _entry(case: Path, folder: Path, pictures: Path) -> str:
     path = folder / "summary.json"
     summary = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     lines = [f"## {tomllib.loads(text)['title']}", "", *textwrap.wrap(leading_text(text), 100), ""]
-    lines += [f"    python3 -m thermowear {command_for(case)} demos/{case.name}", ""]
+    lines += [f"    python3 -m thermowear {command_for(text)} demos/{case.name}", ""]
     lines += [figures(summary), ""] if summary else []
     for names in CHOICES:
         for name in _drawn(folder, names, list(summary.get("contacts", {}))):

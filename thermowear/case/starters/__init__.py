@@ -28,6 +28,12 @@ def starter_text(name: str) -> str:
     return (resources.files(__name__) / f"{name}.toml").read_text("utf-8")
 
 
+def command_for(text: str) -> str:
+    """Command that a case file is made for: that of its own table, or ``run``."""
+    tables = tomllib.loads(text)
+    return next((name for name in ("calibrate", "study") if name in tables), "run")
+
+
 def starter_files(name: str) -> dict[str, bytes]:
     """Files that a starter case reads from its own folder, by name.
 

@@ -107,6 +107,11 @@ class VariantsFolder:
         return cls.MARK in (read_object(folder / "run.json") or {})
 
     @property
+    def count(self) -> int:
+        """Number of variants."""
+        return len(self._cells)
+
+    @property
     def ended(self) -> dict[int, str]:
         """Status of the variants that have ended, by number."""
         return {number: end.status for number, end in self._ends.items()}

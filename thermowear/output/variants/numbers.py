@@ -18,8 +18,8 @@ MAIN = (
     *("growth_rate_per_s", "dissipated_energy_J"),
 )
 """Keys of the main numbers, beside the largest pressure."""
-_OF_PARTS = ("contacts", "holders", "bodies")
-"""Tables of a summary with numbers of the parts of a model of several bodies."""
+_OF_PARTS = ("contacts", "holders", "bodies", "probes")
+"""Tables of a summary with numbers of parts of a model."""
 
 
 def numbers_of(summary: dict[str, Any]) -> dict[str, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -271,7 +271,7 @@ class Series:
         return balanced(analyse(system, analysis, observer)[1])
 
 
-def groups(models: Sequence[Model]) -> list[list[int]]:
+def groups(models: Iterable[Model]) -> list[list[int]]:
     """Group numbers of models by equal elastic bodies, ordered within by equal thermal set-up.
 
     Groups share no costly set-up results, and may be computed in parallel.

@@ -27,9 +27,7 @@ class BatchReport:
         Least time between two lines on successful variants [s].
     """
 
-    def __init__(
-        self, folder: VariantsFolder, named: Callable[[int], str], interval: float = 0.0
-    ):
+    def __init__(self, folder: VariantsFolder, named: Callable[[int], str], interval: float = 0.0):
         self._folder, self._named, self._interval = folder, named, interval
         self.console = Terminal(highlight=False)
         self._began = time.perf_counter()

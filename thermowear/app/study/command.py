@@ -105,7 +105,9 @@ def _write(folder: Path, found: Study) -> None:
     if found.indices is not None:
         write_sobol(folder, outputs, found.inputs, found.indices)
     width = len(design.columns)
-    lows, highs = (design.si[own].diagonal() for own in (slice(1, 1 + width), slice(1 + width, 1 + 2 * width)))
+    lows, highs = (
+        design.si[own].diagonal() for own in (slice(1, 1 + width), slice(1 + width, 1 + 2 * width))
+    )
     headers = [column.header for column in design.columns]
     write_tornado(folder, outputs, headers, lows, highs, found.swings)
     write_bands(folder, found.bands.tables)

@@ -99,8 +99,10 @@ def study_design(inputs: Sequence[StudyInput], table: StudyTable) -> StudyDesign
         parts += [CURVES] * len(points)
     values, moved = _within_limits(inputs, np.concatenate([swings, points]))
     if moved:
-        notes.append(f"{moved} of {len(values)} samples were beyond the bounds of a calibrated "
-                     "parameter, and were moved to them")
+        notes.append(
+            f"{moved} of {len(values)} samples were beyond the bounds of a calibrated "
+            "parameter, and were moved to them"
+        )
     assert values.shape == (len(parts), width)
     return StudyDesign(tuple(inputs), values, tuple(parts), base, tuple(notes))
 

@@ -128,7 +128,7 @@ def _line(key: str, found: list[tuple[int, str]], design: StudyDesign) -> str:
     return f"{count}, the first with {', '.join(design.overrides(first))}: {line}"
 
 
-class _without_notes(warnings.catch_warnings):  # noqa: N801
+class _without_notes(warnings.catch_warnings):
     """Context without the notes on the case, which were given once for the case itself."""
 
     def __enter__(self):

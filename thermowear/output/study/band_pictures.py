@@ -64,9 +64,7 @@ def _read(record: StudyRecord, path: Path) -> _Curves | None:
         across = known[header], known[header].drawn(columns[header])
         if "s_m" not in columns:
             return None
-    headers = dict.fromkeys(
-        name.removesuffix("_50") for name in columns if name.endswith("_50")
-    )
+    headers = dict.fromkeys(name.removesuffix("_50") for name in columns if name.endswith("_50"))
     groups: dict[str, list[tuple[Quantity, np.ndarray]]] = {}
     for header in headers:
         values = np.array([columns[f"{header}_{level}"] for level in ("2.5", "50", "97.5")])

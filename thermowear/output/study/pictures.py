@@ -78,9 +78,7 @@ def _draw_tornado(record: StudyRecord, path: Path) -> None:
         figure.legend(handles, labels, loc="outside lower center", ncols=2)
 
 
-def _plot_swings(
-    axis: Axes, record: StudyRecord, output: str, rows: list[dict[str, str]]
-) -> None:
+def _plot_swings(axis: Axes, record: StudyRecord, output: str, rows: list[dict[str, str]]) -> None:
     quantity = record.quantity(output)
     names = ("output_at_medians", "output_at_low", "output_at_high")
     base, low, high = (quantity.drawn(np.array([float(r[n]) for r in rows])) for n in names)

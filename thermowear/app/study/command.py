@@ -49,10 +49,13 @@ def _run_with(crew: Crew, chosen) -> int:
     checksum = checksum_of([plan.tables, changes, design.parts])
     path = chosen.output or Path("results") / f"{chosen.case.stem}-study"
     headers = ["part", *(column.header for column in design.columns)]
-    cells = [(part, *map(float, row)) for part, row in zip(design.parts, design.si, strict=True)]
+    cells: list[list[float | str]] = [
+        [part, *map(float, row)] for part, row in zip(design.parts, design.si, strict=True)
+    ]
     groups = checked_groups(plan.tables, design, every)
+    about = _about(plan)
     folder = StudyFolder(
-        *(path, headers, cells, as_plain(case), _about(plan), checksum),
+        *(path, headers, cells, as_plain(case), about, checksum),
         *(chosen.overwrite, chosen.resume),
     )
     report = BatchReport(folder, lambda k: f"variant {k} ({', '.join(changes[k - 1])})", _INTERVAL)
@@ -104,10 +107,7 @@ def _write(folder: Path, found: Study) -> None:
     write_quantiles(folder, outputs, found.quantiles)
     if found.indices is not None:
         write_sobol(folder, outputs, found.inputs, found.indices)
-    width = len(design.columns)
-    lows, highs = (
-        design.si[own].diagonal() for own in (slice(1, 1 + width), slice(1 + width, 1 + 2 * width))
-    )
+    lows, highs = design.swing_values
     headers = [column.header for column in design.columns]
     write_tornado(folder, outputs, headers, lows, highs, found.swings)
     write_bands(folder, found.bands.tables)

@@ -1,4 +1,4 @@
-"""Curves of a variant for bands: history over time and points of the contact, in single precision."""
+"""Curves of a variant for bands: its history, and the points of the contact."""
 
 from __future__ import annotations
 

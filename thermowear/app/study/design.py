@@ -50,6 +50,13 @@ class StudyDesign:
         return slice(0, 1 + 2 * len(self.columns))
 
     @property
+    def swing_values(self) -> tuple[list[float], list[float]]:
+        """Low and high values of the columns in the swings, in SI."""
+        width = len(self.columns)
+        low, high = np.split(self.si[1 : self.swings.stop], [width])
+        return low.diagonal().tolist(), high.diagonal().tolist()
+
+    @property
     def sample(self) -> np.ndarray:
         """Indices of the variants that are an independent sample of all inputs."""
         return np.flatnonzero([part in (CURVES, "A", "B") for part in self.parts])
@@ -64,7 +71,7 @@ class StudyDesign:
         """Changes ``KEY=VALUE`` of the case in a variant, by its index."""
         own = columns_of([one.distribution for one in self.inputs])
         changes = (
-            one.overrides(self.values[k, columns])
+            one.overrides(self.values[k, columns].tolist())
             for one, columns in zip(self.inputs, own, strict=True)
         )
         return tuple(change for each in changes for change in each)

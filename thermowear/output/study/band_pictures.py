@@ -84,9 +84,9 @@ def _panel(header: str) -> str:
 
 def _plot(axis: Axes, curves: _Curves, group: list[tuple[Quantity, np.ndarray]]) -> None:
     quantity, x = curves.across
-    for (drawn, (low, median, high)), color in zip(group, BODIES, strict=False):
+    for (drawn, (low, median, high)), color, line in zip(group, BODIES, "-:", strict=False):
         label = drawn.body if len(group) > 1 else None
-        axis.plot(x, median, color=color, label=label)
+        axis.plot(x, median, line, color=color, label=label)
         axis.fill_between(x, low, high, color=color, alpha=0.25, linewidth=0)
     axis.set_xlabel(quantity.axis)
     first = group[0][0]

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from ..pictures.panels import panels
 from .band_pictures import draw_bands
@@ -60,7 +62,10 @@ def _draw_distributions(record: StudyRecord, path: Path) -> None:
             low, median, high = marks
             axis.axvline(median, color="k", linewidth=1.2)
             axis.axvspan(low, high, color="tab:blue", alpha=0.12, linewidth=0)
-            axis.set_title(f"{median:.4g}  [{low:.4g}, {high:.4g}]", fontsize="small")
+            told = f"median {median:.4g}, 95 %: {low:.4g} … {high:.4g}"
+            axis.set_title(told, fontsize="small")
+            axis.yaxis.set_major_locator(MaxNLocator(5, integer=True))
+            axis.xaxis.set_major_locator(MaxNLocator(5))
             axis.set_xlabel(quantity.axis)
         for axis in axes[:, 0]:
             axis.set_ylabel("samples")
@@ -94,6 +99,7 @@ def _plot_swings(axis: Axes, record: StudyRecord, output: str, rows: list[dict[s
     keys = [short(record.label(rows[k]["input"])) for k in order]
     axis.set_yticks(places, keys, fontsize="x-small")
     axis.grid(axis="y", visible=False)
+    axis.xaxis.set_major_locator(MaxNLocator(6))
     axis.set_xlabel(quantity.axis)
 
 
@@ -101,15 +107,18 @@ def _draw_sobol(record: StudyRecord, path: Path) -> None:
     """Draw first-order and total indices of the main outputs with their intervals."""
     inputs = list(dict.fromkeys(row["input"] for row in record.indices))
     size = (2.9, 1.0 + 1.25 * _LINE * len(inputs))
-    options = {"sharex": True, "sharey": True}
+    options: dict[str, Any] = {"sharex": True, "sharey": True}
     with panels(path, len(record.main), _ACROSS, size, margin=(1.0, 0.3), **options) as drawn:
         figure, axes = drawn
         for axis, output in zip(axes.flat, record.main, strict=False):
             rows = {row["input"]: row for row in record.indices if row["output"] == output}
             _plot_indices(axis, [rows[name] for name in inputs])
             axis.set_title(record.quantity(output).label, fontsize="small")
-        axes.flat[0].set_yticks(range(len(inputs)), map(short, inputs), fontsize="x-small")
+            axis.tick_params(axis="y", labelsize="x-small")
+            axis.label_outer()
+        axes.flat[0].set_yticks(range(len(inputs)), list(map(short, inputs)))
         axes.flat[0].invert_yaxis()
+        axes.flat[0].set_xlim(-0.05, 1.1)
         handles, labels = axes.flat[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=2)
 
@@ -123,7 +132,8 @@ def _plot_indices(axis: Axes, rows: list[dict[str, str]]) -> None:
             for key in (name, f"{name}_lower", f"{name}_upper")
         )
         spread = np.maximum([value - low, high - value], 0.0)
-        options = {"color": color, "label": label, "error_kw": {"elinewidth": 0.8}}
-        axis.barh(places + side * _BAR, value, _BAR, xerr=spread, **options)
+        width = {"elinewidth": 0.8}
+        place = places + side * _BAR
+        axis.barh(place, value, _BAR, xerr=spread, color=color, label=label, error_kw=width)
     axis.grid(axis="y", visible=False)
     axis.set_xlabel("share in the variance")

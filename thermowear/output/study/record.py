@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...results.quantity import Quantity
+from ...results.quantity import Quantity, multiple
 from ..files import model_of, read_object
 from ..variants.numbers import quantity_at
 from ..variants.units import in_pictures
@@ -63,8 +63,12 @@ class StudyRecord:
         return (known or self.outputs)[:_MOST]
 
     def quantity(self, output: str) -> Quantity:
-        """Quantity of an output, labelled for the kinematic model."""
-        return quantity_at(output).in_model(self.model)
+        """Quantity of an output, labelled for the kinematic model, in a unit of its size."""
+        found = quantity_at(output).in_model(self.model)
+        if found.unit != found.si or output not in self.sample:
+            return found
+        size = np.nanmax(np.abs(self.sample[output]), initial=0.0)
+        return found.shown_in(multiple(found.si, float(size))[0])
 
     def quantile(self, output: str, name: str) -> float:
         """Quantile of an output by its name, such as "97.5%"."""

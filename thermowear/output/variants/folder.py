@@ -129,7 +129,7 @@ class VariantsFolder:
         seconds: float,
         **more: Any,
     ) -> None:
-        """Record the end of a variant, by its number from 1; more entries go to the journal only."""
+        """Record the end of a variant, by its number from 1, with more entries of the journal."""
         numbers = numbers | {"seconds": round(seconds, 4)}
         self._ends[number] = VariantEnd(status, numbers)
         line = {"variant": number, "status": status, "numbers": numbers, **more}

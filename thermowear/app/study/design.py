@@ -54,7 +54,7 @@ class StudyDesign:
         """Low and high values of the columns in the swings, in SI."""
         width = len(self.columns)
         low, high = np.split(self.si[1 : self.swings.stop], [width])
-        return low.diagonal().tolist(), high.diagonal().tolist()
+        return [float(v) for v in low.diagonal()], [float(v) for v in high.diagonal()]
 
     @property
     def sample(self) -> np.ndarray:
@@ -71,7 +71,7 @@ class StudyDesign:
         """Changes ``KEY=VALUE`` of the case in a variant, by its index."""
         own = columns_of([one.distribution for one in self.inputs])
         changes = (
-            one.overrides(self.values[k, columns].tolist())
+            one.overrides([float(v) for v in self.values[k, columns]])
             for one, columns in zip(self.inputs, own, strict=True)
         )
         return tuple(change for each in changes for change in each)

@@ -42,4 +42,4 @@ def _line(record: StudyRecord, output: str) -> tuple[str, str, str, str]:
 def influences(record: StudyRecord, output: str) -> str:
     """Most influential inputs with their shares."""
     named = [pair for pair in record.influence(output)[:_NAMED] if pair[1] >= _LEAST]
-    return ", ".join(f"{name} {part:.2f}" for name, part in named)
+    return ", ".join(f"{record.brief(name)} {part:.2f}" for name, part in named)

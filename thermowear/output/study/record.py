@@ -92,6 +92,12 @@ class StudyRecord:
         names = [n for n in self.settings["columns"] if header == n or header.startswith(f"{n}_")]
         return max(names, key=len, default=header)
 
+    def brief(self, name: str) -> str:
+        """Last part of the path of an input, or the last two if others have the same one."""
+        *_, last = name.split(".")
+        same = [other for other in self.settings["columns"] if other.split(".")[-1] == last]
+        return last if len(same) < 2 else ".".join(name.split(".")[-2:])
+
     def unit(self, name: str) -> str:
         """Unit of an input as it is given, for labels."""
         return in_pictures(self.settings["columns"].get(name, ""))

@@ -19,6 +19,7 @@ _ACROSS = 3
 _MOST_INPUTS = 8
 _BAR = 0.36  # height of a bar, where the distance of two inputs is 1
 _LINE = 0.34  # height of an input in a diagram [inches]
+_LEAST = 1e-3  # swing of an input that is drawn, relative to the largest one
 _LOW, _HIGH = "tab:blue", "tab:orange"
 
 
@@ -87,7 +88,9 @@ def _plot_swings(axis: Axes, record: StudyRecord, output: str, rows: list[dict[s
     quantity = record.quantity(output)
     names = ("output_at_medians", "output_at_low", "output_at_high")
     base, low, high = (quantity.drawn(np.array([float(r[n]) for r in rows])) for n in names)
-    order = np.argsort(np.nan_to_num(np.abs(high - low)))[-_MOST_INPUTS:]
+    width = np.nan_to_num(np.abs(high - low))
+    order = np.argsort(width)[-_MOST_INPUTS:]
+    order = order[width[order] > _LEAST * width.max()]
     places = np.arange(len(order))
     for values, color, label in (
         (low, _LOW, "input at its 5 % quantile"),
@@ -98,6 +101,7 @@ def _plot_swings(axis: Axes, record: StudyRecord, output: str, rows: list[dict[s
     axis.axvline(base[0], color="k", linewidth=0.8)
     keys = [short(record.label(rows[k]["input"])) for k in order]
     axis.set_yticks(places, keys, fontsize="x-small")
+    axis.set_ylim(len(order) - min(_MOST_INPUTS, len(rows)) - 0.6, len(order) - 0.4)
     axis.grid(axis="y", visible=False)
     axis.xaxis.set_major_locator(MaxNLocator(6))
     axis.set_xlabel(quantity.axis)

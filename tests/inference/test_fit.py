@@ -198,3 +198,35 @@ def test_an_unfinished_fit_says_so():
     found = fit(space, observed, FunctionModel(curve), max_evaluations=2)
     assert not found.converged
     assert "not converged" in found.message
+
+
+def test_search_ends_near_the_optimum():
+    """requirement: within the tolerance, in standard errors, of the optimum; fewer predictions."""
+    space = ParameterSpace((Parameter("a", 2.0, 0.1, 20.0), Parameter("b", 20.0, 1.0, 50.0)))
+    truth = saturating(TIMES)(np.array([5.0, 8.0]))
+    noise = np.random.default_rng(3).normal(size=len(TIMES))
+    observed = Observations(truth * (1 + 0.05 * noise), 0.05 * truth, ("y",) * len(TIMES))
+    found = [
+        fit(space, observed, FunctionModel(saturating(TIMES)), tolerance)
+        for tolerance in (1e-9, 1e-2)
+    ]
+    best, near = found
+    off = np.linalg.solve(np.linalg.cholesky(best.covariance), near.internal - best.internal)
+    assert np.linalg.norm(off) < 2e-2
+    assert near.converged
+    assert "within the tolerance" in near.message
+    assert near.evaluations < best.evaluations
+
+
+@pytest.mark.parametrize("upper", [4.0, 6.0])
+def test_search_ends_at_a_bound(upper):
+    """requirement: the other parameters are the best for that bound."""
+    space = ParameterSpace((Parameter("a", 2.0, 0.1, upper), Parameter("b", 20.0, 1.0, 50.0)))
+    observed = Observations(saturating(TIMES)(np.array([9.0, 8.0])), 0.05, ("y",) * len(TIMES))
+    near = fit(space, observed, FunctionModel(saturating(TIMES)), 1e-3)
+    one = ParameterSpace((Parameter("b", 20.0, 1.0, 50.0),))
+    held = FunctionModel(lambda values: saturating(TIMES)(np.array([upper, values[0]])))
+    best = fit(one, observed, held, 1e-9)
+    assert near.at_bounds == ("a",)
+    assert abs(near.values[1] - best.values[0]) < 1e-2 * best.standard_errors[0]
+    assert near.values[0] == pytest.approx(upper, rel=1e-3)

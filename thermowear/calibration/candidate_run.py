@@ -78,6 +78,7 @@ def predict(series, run: CandidateRun) -> Prediction:
             if experiment.ends_with_times():
                 analysis = replace(analysis, end_time=max(experiment.times), until=None)
             analysis = replace(analysis, hits=experiment.times, steps=run.steps)
+            analysis = replace(analysis, compares=experiment.compares_with_steady())
         result = series.run(model_of(case), analysis)
         if result.stopped is not None:
             raise result.stopped

@@ -43,7 +43,7 @@ class CaseModel:
         runner: Runner,
     ):
         self._table, self._experiments, self._runner = table, list(experiments), runner
-        self._known: dict[bytes, list[Prediction]] = {}
+        self._known: dict[str, list[Prediction]] = {}
         self._follows = True
         self.runs = 0
         if not all(one.located for one in experiments):
@@ -96,15 +96,14 @@ class CaseModel:
         return next((one.failure for one in self._at(values) if one.failure), "")
 
     def _at(self, values: np.ndarray) -> list[Prediction]:
-        key = np.asarray(values, dtype=float).tobytes()
+        key = _key(values)
         if key not in self._known:
             self._known[key] = self._computed([(values, [()] * len(self._experiments))])[0]
         return self._known[key]
 
     def _beside(self, values: np.ndarray, others: Sequence[np.ndarray]) -> list[list[Prediction]]:
         steps = [one.steps if self._follows else () for one in self._at(values)]
-        start = np.asarray(values, dtype=float).tobytes()
-        keys = [start + np.asarray(other, dtype=float).tobytes() for other in others]
+        keys = [_key(values, other) for other in others]
         new = [k for k, key in enumerate(keys) if key not in self._known]
         computed = self._computed([(others[k], steps) for k in new])
         self._known |= {keys[k]: found for k, found in zip(new, computed, strict=True)}
@@ -129,7 +128,8 @@ class CaseModel:
     def _find_times(self) -> None:
         """Times of the measurements at sliding distances, from a run with the first values."""
         first = np.array([p.start.number for p in self._table.parameters.values()])
-        for k, one in enumerate(self._at(first)):
+        found = self._at(first)
+        for k, one in enumerate(found):
             if not self._experiments[k].located:
                 if one.failure:
                     raise ComputationError(one.failure)
@@ -137,4 +137,11 @@ class CaseModel:
                     raise CaseError("calibrate: sliding distances need a transient analysis")
                 time = np.array([0.0, *one.steps])
                 self._experiments[k] = self._experiments[k].at_distances(time, one.distances)
-        self._known.clear()
+        runs = zip(self._experiments, found, strict=True)
+        if not all(set(one.times) <= set(run.steps[-1:]) for one, run in runs):
+            self._known.clear()  # the steps of those runs ended elsewhere
+
+
+def _key(*points: np.ndarray) -> str:
+    """Key of runs at values of the parameters, common to values that agree to rounding."""
+    return " ".join(f"{value:.13e}" for values in points for value in values)

@@ -17,6 +17,8 @@ from .measurement import Measurement
 _OTHER = ("calibrate", "study", "title")
 _EQUAL = 1e-9
 """Relative difference of times that are hit by one step."""
+_STEADY = ("distance_from_steady", "rigid_wear_")
+"""Numbers of the summary that refer to the steady state."""
 
 
 @dataclass(frozen=True)
@@ -59,6 +61,11 @@ class Experiment:
             {"time", "sliding_distance"} & one.reading.at.keys() for one in self.measurements
         )
 
+    def compares_with_steady(self) -> bool:
+        """Test whether a measured quantity refers to the steady state that a run approaches."""
+        names = (one.reading.name.rpartition(".")[2] for one in self.measurements)
+        return any(name.startswith(_STEADY) for name in names)
+
     def at_distances(self, time: np.ndarray, distance: np.ndarray) -> Experiment:
         """Experiment whose steps hit the measured sliding distances, too.
 
@@ -69,7 +76,9 @@ class Experiment:
         """
         wanted = [m.reading.at.get("sliding_distance", np.zeros(0)) for m in self.measurements]
         found = np.interp(np.concatenate(wanted), distance, time)  # exact at a constant speed
-        return replace(self, times=_distinct([*self.times, *found]), located=True)
+        found[np.isclose(found, time[-1], rtol=_EQUAL, atol=0.0)] = time[-1]
+        times = _distinct([*self.times, *map(float, found)])
+        return replace(self, times=times, located=True)
 
 
 def experiments(case: AnyCase, measurements: Sequence[Measurement]) -> list[Experiment]:

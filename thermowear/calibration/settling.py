@@ -16,6 +16,8 @@ _NOT_MEASURED = ("error", "balance", "dissipation", "distance_from", "rigid_wear
 _WORTH = 0.02
 """Least relative change along the undetermined direction, per unit of its largest part."""
 _MOST = 3
+_SMOOTH = 0.3
+"""Largest relative difference of forward and backward derivatives: else a number is rounding."""
 
 
 @dataclass(frozen=True)
@@ -51,10 +53,11 @@ def suggestions(
     if found.identified:
         return ()
     internal, step = space.internal(values), model.step
-    others = list(space.admissible(internal + step * np.eye(len(space))))
+    offsets = step * np.eye(len(space))
+    others, opposite = (list(space.admissible(internal + s * offsets)) for s in (1, -1))
     suggested: dict[str, Suggestion] = {}
     for candidates in (
-        _numbers(model, values, others, step),
+        _numbers(model, values, [others, opposite], step),
         _conditions(model, values, others, step),
     ):
         for direction in found.null.T:
@@ -65,17 +68,18 @@ def suggestions(
 
 
 def _numbers(
-    model: CaseModel, values: np.ndarray, others: list[np.ndarray], step: float
+    model: CaseModel, values: np.ndarray, both: list[list[np.ndarray]], step: float
 ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Measurable numbers of the summaries, with their derivatives."""
-    base, *moved = model.numbers(values, [values, *others])
+    """Measurable numbers of the summaries, with their derivatives by steps to both sides."""
+    (base,) = model.numbers(values, [values])
+    sides = [model.numbers(values, points) for points in both]
     found = {}
     for name, number in base.items():
         if not _is_measured(name.partition(" ")[0]):
             continue
-        changes = np.array([one.get(name, np.nan) - number for one in moved])
-        if np.isfinite(changes).all():
-            found[f"a measurement of {name}"] = np.array([number]), changes[None] / step
+        ahead, behind = (np.array([o.get(name, np.nan) - number for o in one]) for one in sides)
+        if np.linalg.norm(ahead + behind) <= _SMOOTH * np.linalg.norm(ahead):  # False for NaN
+            found[f"a measurement of {name}"] = np.array([number]), ahead[None] / step
     return found
 
 

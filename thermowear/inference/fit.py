@@ -3,6 +3,10 @@
 The weighted residuals of observations and priors are minimised in internal coordinates by a trust
 region reflective method (Branch, Coleman and Li, SIAM J. Sci. Comput. 21 (1999) 1; scipy). Only
 predictions and finite differences of them are needed.
+
+With the weighted Jacobian ``J = U S Vᵀ`` and the residuals r, the optimum is a Gauss-Newton step of
+``|Uᵀ r|`` standard errors away: the search ends once that is small, as further runs of the model
+would not change the parameters by more than a small part of their uncertainty.
 """
 
 from __future__ import annotations
@@ -16,19 +20,29 @@ from scipy.optimize import least_squares
 
 from ..errors import ComputationError
 from .forward import ForwardModel
-from .jacobian import NOISE, central_jacobian, forward_jacobian
+from .jacobian import (
+    NOISE,
+    central_jacobian,
+    forward_jacobian,
+    principal_directions,
+    without_effect,
+)
 from .joint_normal import JointNormal
 from .observations import Observations
 from .parameters import ParameterSpace
 
 _AT_BOUND = 1e-3  # distance to a bound relative to the distance of both
 _LEAST = 1e-12  # smallest scatter, relative to the deviations, for residuals that are zero
+_STALLED = 1e-3  # change of the parameters, relative to the tolerance, that ends the search
+_ROUNDING = 1e-15
+_NEAR = 5
 _ENDINGS = {
     0: "not converged: the largest number of evaluations was reached",
     1: "converged: the gradient is small",
     2: "converged: the sum of squares does not change any more",
     3: "converged: the parameters do not change any more",
     4: "converged: neither the sum of squares nor the parameters change any more",
+    _NEAR: "converged: the optimum is within the tolerance",
 }
 
 
@@ -156,7 +170,7 @@ def fit(
     space: ParameterSpace,
     observations: Observations,
     model: ForwardModel,
-    tolerance: float = 1e-8,
+    tolerance: float = 1e-6,
     max_evaluations: int = 100,
     noise: float = NOISE,
 ) -> Fit:
@@ -165,7 +179,7 @@ def fit(
     Parameters
     ----------
     tolerance : float
-        Relative change of the sum of squares and of the parameters at which the iteration ends.
+        Distance from the optimum in standard errors at which the search ends.
     max_evaluations : int
         Largest number of predictions, without those for derivatives.
     noise : float
@@ -176,34 +190,47 @@ def fit(
     ComputationError
         If predictions at the start, or beside an accepted point, cannot be computed.
     """
-    problem = _LeastSquares(space, observations, model)
+    problem = _LeastSquares(space, observations, model, tolerance, noise)
     start = space.internal(space.start)
     if not np.isfinite(problem.residuals(start)).all():
         raise ComputationError("the predictions at the start of the fit could not be computed")
-    found = least_squares(
-        problem.residuals,
-        start,
-        jac=problem.jacobian,
-        bounds=space.bounds,
-        method="trf",
-        ftol=tolerance,
-        xtol=tolerance,
-        gtol=tolerance,
-        max_nfev=max_evaluations,
-    )
-    predicted = problem.predicted(found.x)
-    jacobian = central_jacobian(space, model, found.x, predicted)
+    stalled = _STALLED * tolerance
+    try:
+        found = least_squares(
+            problem.residuals,
+            start,
+            jac=problem.jacobian,
+            bounds=space.bounds,
+            method="trf",
+            ftol=max(stalled * tolerance, _ROUNDING),
+            xtol=max(stalled, _ROUNDING),
+            gtol=None,
+            max_nfev=max_evaluations,
+        )
+        internal, status = found.x, found.status
+    except _NearOptimum as near:
+        internal, status = near.internal, _NEAR
+    predicted = problem.predicted(internal)
+    jacobian = central_jacobian(space, model, internal, predicted)
     return Fit(
         space,
         observations,
-        found.x,
+        internal,
         predicted,
         jacobian / observations.deviations[:, None],
-        found.status > 0,
-        _ENDINGS[found.status],
+        status > 0,
+        _ENDINGS[status],
         len(problem.known),
         noise,
     )
+
+
+class _NearOptimum(Exception):
+    """End of a search at internal coordinates near the optimum."""
+
+    def __init__(self, internal: np.ndarray):
+        super().__init__()
+        self.internal = internal
 
 
 @dataclass(frozen=True)
@@ -213,6 +240,8 @@ class _LeastSquares:
     space: ParameterSpace
     observations: Observations
     model: ForwardModel
+    tolerance: float
+    noise: float
     known: dict[bytes, np.ndarray] = field(default_factory=dict)
 
     def predicted(self, internal: np.ndarray) -> np.ndarray:
@@ -228,8 +257,29 @@ class _LeastSquares:
         return np.concatenate([observed, self.space.prior_residuals(internal)])
 
     def jacobian(self, internal: np.ndarray) -> np.ndarray:
-        """Derivatives of the residuals, shape (n + m, p)."""
+        """Derivatives of the residuals, shape (n + m, p).
+
+        Raises
+        ------
+        _NearOptimum
+            If the optimum is within the tolerance.
+        """
         predicted = self.predicted(internal)
         rows = forward_jacobian(self.space, self.model, internal, predicted)
         rows = rows / self.observations.deviations[:, None]
-        return np.concatenate([rows, self.space.prior_jacobian])
+        rows = np.concatenate([rows, self.space.prior_jacobian])
+        if self._remaining(internal, rows) < self.tolerance:
+            raise _NearOptimum(internal.copy())
+        return rows
+
+    def _remaining(self, internal: np.ndarray, rows: np.ndarray) -> float:
+        """Length of the Gauss-Newton step within the bounds, in standard errors."""
+        residuals, (lower, upper) = self.residuals(internal), self.space.bounds
+        slope, near = rows.T @ residuals, _AT_BOUND * self.space.widths
+        distance = np.where(slope > 0, internal - lower, upper - internal)
+        held = (distance < near) & (slope != 0)
+        to_bounds = rows[:, held] @ distance[held]
+        singular_values, directions = principal_directions(rows[:, ~held])
+        seen = ~without_effect(singular_values, self.noise)
+        inside = directions[:, seen].T @ slope[~held] / singular_values[seen]
+        return float(np.hypot(np.linalg.norm(to_bounds), np.linalg.norm(inside)))

@@ -122,11 +122,14 @@ class TransientAnalysis(TimedAnalysis):
     ----------
     adapts : bool
         True if the allowed wear in the gap follows the change by the last geometry update.
+    compares : bool
+        True if the states are compared with the steady one also where that does not end the run.
     """
 
     type: ClassVar[str] = "transient"
 
     adapts: bool = True
+    compares: bool = True
 
 
 @dataclass(frozen=True)

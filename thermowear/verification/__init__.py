@@ -24,6 +24,7 @@ from .cases.heat.hot_spots import tei_layer_antisymmetric, tei_layer_symmetric, 
 from .cases.heat.instability import half_plane_instability, sliding_rod
 from .cases.heat.moving_band import moving_band
 from .cases.heat.transient_heat import braking_stop, step_flux
+from .cases.inference.calibration import calibration
 from .cases.inference.identifiability import identifiability
 from .cases.inference.sobol import sobol
 from .cases.steady.annular_punch import annular_punch, running_in
@@ -54,7 +55,7 @@ _CASES = SPECIAL_CASES | dict.fromkeys((
     tei_growth, optimal_shape,
     ring_3d, ring_3d_whole, pin_on_disk_3d, composite_face, coating, coated_bush,
     glued_blocks, pad_disk_pad, clutch_pack, face_seal, two_shoes, floating_caliper,
-    layer_instability, cad_part, identifiability, sobol,
+    layer_instability, cad_part, identifiability, sobol, calibration,
 ), ())  # fmt: skip
 CASES = {
     id: identified(id, case, *runs)

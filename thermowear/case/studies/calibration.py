@@ -123,7 +123,7 @@ class CalibrationTable(Section):
     deviations : str
         ``"known"``, or ``"estimated"`` from the scatter: those given are then relative weights.
     tolerance : float
-        Relative change of the parameters and of the sum of squares at which the search ends.
+        Distance from the optimum in standard errors at which the search ends.
     max_evaluations : int
     confidence : float
         Level of the intervals.
@@ -134,7 +134,7 @@ class CalibrationTable(Section):
     set: dict[str, str] = {}
     observations: dict[str, ObservationTable] = {}
     deviations: Literal["known", "estimated"] = "known"
-    tolerance: Annotated[Number, Field(gt=0.0, le=1e-2)] = 1e-6
+    tolerance: Annotated[Number, Field(gt=0.0, le=0.1)] = 1e-3
     max_evaluations: Annotated[int, Field(ge=1, le=100_000, strict=True)] = 100
     confidence: Percentage = 0.95
     posterior: PosteriorTable | None = None

@@ -45,6 +45,8 @@ def _principle(settings: TransientAnalysis, system: System) -> SteadyState | Non
     time, for wear laws that depend on the depth, or if the principle has no solution. Faces with
     layers approach that of their substrates.
     """
+    if not settings.compares and settings.until is None:
+        return None
     free, grows = system.holder.free, any(ends_outside_zone(system))
     if not (len(free) and free.all()) or (grows and settings.until is None):
         return None

@@ -28,16 +28,17 @@ from ...model.interface import Interface
 from ...model.model import Model, Zone
 from ...parallel import on_root
 from ...timer import Phases
-from .cached_bodies import CachedBodies
-from .contact_points import (
+from ..points.contact_points import (
     contact_points,
     groups_of_parts,
     require_laws,
     softness_of_parts,
     worn_contact_points,
 )
-from .face_regions import divided_faces, require_regions
-from .probe_points import probe_points
+from ..points.face_regions import divided_faces, require_regions
+from ..points.probe_points import probe_points
+from ..points.worn_geometry import WornGeometry
+from .cached_bodies import CachedBodies
 from .rigid_modes import dead_load, dead_resultant, load_direction, rigid_modes
 from .setup_cache import SetupCache, inputs
 from .system import System
@@ -45,7 +46,6 @@ from .thermal_system import (
     coupled_without_condensation,
     heat_partition,
 )
-from .worn_geometry import WornGeometry
 
 
 def build(

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from ...model.model import Model, Zone
-from .contact_points import groups_of_parts, softness_of_parts
-from .face_regions import regions_of
+from ..points.contact_points import groups_of_parts, softness_of_parts
+from ..points.face_regions import regions_of
 
 Part = TypeVar("Part")
 

@@ -35,7 +35,7 @@ from ...errors import CaseError
 from ...model.conditions import Heat, Motion
 from ...model.model import Model
 from ...timer import Phases
-from .contact_points import facing_parts
+from ..points.contact_points import facing_parts
 from .thermal_loads import ThermalLoads, temperature_at, thermal_loads
 
 _MOST_CONDENSED = 4000

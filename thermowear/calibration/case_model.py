@@ -44,7 +44,7 @@ class CaseModel:
     ):
         self._table, self._experiments, self._runner = table, list(experiments), runner
         self._known: dict[str, list[Prediction]] = {}
-        self._follows = True
+        self._follows = all(one.smooth for one in experiments)
         self.runs = 0
         if not all(one.located for one in experiments):
             self._find_times()

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..case import AnyCase, as_plain, load
 from ..case.studies.calibration import CalibrationTable
-from ..case.tables.analyses import Timed
+from ..case.tables.analyses import Fretting, Timed
 from ..errors import CaseError
 from .measurement import Measurement
 
@@ -34,12 +34,15 @@ class Experiment:
         Times that the steps hit exactly [s].
     located : bool
         False until the times of all sliding distances are known.
+    smooth : bool
+        False if runs choose cycle jumps of their own, even with equal time steps.
     """
 
     tables: dict[str, Any]
     measurements: tuple[Measurement, ...]
     times: tuple[float, ...] = ()
     located: bool = True
+    smooth: bool = True
 
     @property
     def count(self) -> int:
@@ -110,26 +113,27 @@ def _experiment(case: AnyCase, members: list[Measurement]) -> Experiment:
     """Experiment that records the faces at the times at which they were measured."""
     tables = {key: table for key, table in as_plain(case).items() if key not in _OTHER}
     times = [float(t) for one in members for t in one.reading.times]
-    if times and not isinstance(case.analysis, Timed):
+    if times and not isinstance(case.analysis, Timed | Fretting):
         raise CaseError(
             f"calibrate.observations: {members[0].label} has times; the analysis "
             f"{case.analysis.type} has none"
         )
-    if isinstance(case.analysis, Timed):
+    if isinstance(case.analysis, Timed | Fretting):
         shown = [float(t) for one in members if one.reading.places for t in one.reading.times]
         analysis = tables["analysis"] | {
             "frames": 0,
             "output_times": [f"{t!r} s" for t in _distinct(shown)],
         }
-        end = case.analysis.end_time
-        if times and (end is None or max(times) > end):
+        end = getattr(case.analysis, "end_time", None)
+        if times and end is not None and max(times) > end:
             raise CaseError(
                 f"calibrate.observations: {members[0].label} goes to {max(times):g} s; the "
                 "analysis ends before (analysis.end_time)"
             )
         tables = tables | {"analysis": analysis}
     located = not any("sliding_distance" in one.reading.at for one in members)
-    return Experiment(tables, tuple(members), _distinct(times), located)
+    smooth = not (isinstance(case.analysis, Fretting) and case.wear)
+    return Experiment(tables, tuple(members), _distinct(times), located, smooth)
 
 
 def _distinct(times: Sequence[float]) -> tuple[float, ...]:

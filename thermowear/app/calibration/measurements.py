@@ -61,13 +61,16 @@ def _of_file(
     case: AnyCase, name: str, own: ObservationTable, path: Path, planned: bool
 ) -> list[Measurement]:
     try:
-        names = [n for n in column_names(path) if n not in _AT and n != _DEVIATION]
+        heads = column_names(path)
+        names = [n for n in heads if n not in _AT and n != _DEVIATION]
         quantities = list(dict.fromkeys(n.removesuffix(f"_{_DEVIATION}") for n in names))
         if planned and own.quantity is not None and not quantities:
             quantities = ["value"]
         if not quantities:
             raise ValueError(f"{path.name} has no column of a measured quantity")
-        columns = read_columns(path, _known_units(case, own, quantities), ordered=False)
+        at_places = not set(heads).isdisjoint(PLACES)
+        units = _known_units(case, own, quantities, at_places)
+        columns = read_columns(path, units, ordered=False)
         if not planned and (missing := [q for q in quantities if q not in columns.values]):
             raise ValueError(f"{columns.name} has no column {missing[0]}")
         return [_measurement(case, name, own, columns, q, len(quantities)) for q in quantities]
@@ -75,10 +78,13 @@ def _of_file(
         raise CaseError(f"calibrate.observations.{name}: {error}") from None
 
 
-def _known_units(case: AnyCase, own: ObservationTable, columns: list[str]) -> dict[str, str]:
+def _known_units(
+    case: AnyCase, own: ObservationTable, columns: list[str], at_places: bool
+) -> dict[str, str]:
     """Columns that a file may have, with a suitable unit each."""
-    known = {name: one.si for name, one in known_quantities().items() if name not in _AT} | _MASS
-    known |= dict.fromkeys(probes_of(case), "degC")
+    quantities = known_quantities(at_places).items()
+    known = {name: one.si for name, one in quantities if name not in _AT}
+    known |= {} if at_places else _MASS | dict.fromkeys(probes_of(case), "degC")
     if own.quantity is not None:
         if own.quantity not in known:
             raise ValueError(f"quantity: {own.quantity} is unknown; see docs/results.md")

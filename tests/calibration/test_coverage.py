@@ -27,9 +27,10 @@ OVERRIDES = (
 def forward(tmp_path_factory):
     """Problem and model of a hot running-in with depths and temperatures at six times."""
     folder = tmp_path_factory.mktemp("data")
-    for name, unit in (("max_wear_1", "um"), ("max_temperature", "K")):
-        rows = (f"{time!r}, 1, 1" for time in map(float, TIMES))
-        head = f"time [s], {name} [{unit}], deviation [{unit}]"
+    for name, unit in (("wear_1", "um"), ("max_temperature", "K")):
+        place, where = (", x [mm]", ", 70") if name == "wear_1" else ("", "")  # the middle
+        rows = (f"{time!r}{where}, 1, 1" for time in map(float, TIMES))
+        head = f"time [s]{place}, {name} [{unit}], deviation [{unit}]"
         (folder / f"{name}.csv").write_text("\n".join([head, *rows]) + "\n", encoding="utf-8")
     files = {path.stem: path for path in folder.iterdir()}
     problem = problem_of(load(HOT, OVERRIDES), files)

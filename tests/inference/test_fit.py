@@ -230,3 +230,19 @@ def test_search_ends_at_a_bound(upper):
     assert near.at_bounds == ("a",)
     assert abs(near.values[1] - best.values[0]) < 1e-2 * best.standard_errors[0]
     assert near.values[0] == pytest.approx(upper, rel=1e-3)
+
+
+def test_kinks_are_told_by_the_distance():
+    """requirement: the larger of two lines, whose crossing fits best: far by the derivatives."""
+    space = ParameterSpace((Parameter("a", 0.2, -1.0, 3.0),))
+    lines = FunctionModel(lambda v: np.array([max(v[0], 3 * v[0] - 2.0), 2.0 - v[0]]))
+    kinked = fit(space, Observations([0.9, 0.75], 0.1, ("y",) * 2), lines, 1e-3)
+    assert kinked.values == pytest.approx([1.0], abs=1e-2)
+    assert kinked.distance > 0.2
+    smooth = fit(
+        line_space(),
+        Observations(MEASURED, DEVIATIONS, ("y",) * 6),
+        FunctionModel(lambda v: LINE @ v),
+        1e-3,
+    )
+    assert smooth.distance < 1e-3

@@ -24,6 +24,8 @@ from .measurement import Measurement
 from .problem import Problem
 from .settling import Suggestion, suggestions, undetermined
 
+_FAR = 0.1
+"""Distance from the optimum, in standard errors, from which on it is reported."""
 _UNLIKELY = 1e-3
 """Probability of residuals from which on they are reported as too large."""
 
@@ -87,6 +89,12 @@ class Calibration:
     def notes(self) -> list[str]:
         """Sentences on what the data do not determine, and on a fit that is not good."""
         found = [] if self.fit.converged else [f"the fit has {self.fit.message}"]
+        if self.fit.converged and (off := self.fit.distance) > _FAR:
+            found.append(
+                f"the search ended {off:.2g} standard errors from the optimum by the derivatives "
+                "there: the predictions are not smooth (such as a maximum whose place changes), "
+                "and the intervals are rough"
+            )
         found += [f"{name} ended at a bound" for name in self.fit.at_bounds]
         found += undetermined(self.identifiability, self.suggestions)
         p_value = self.fit.p_value

@@ -156,6 +156,17 @@ class Fit:
         return self.uncertainty.intervals(level)
 
     @property
+    def distance(self) -> float:
+        """Distance from the optimum by the derivatives to both sides, in standard errors.
+
+        Large where predictions have kinks, such as a maximum whose place changes.
+        """
+        rows = np.concatenate([self.jacobian, self.space.prior_jacobian])
+        priors = self.space.prior_residuals(self.internal)
+        residuals = np.concatenate([self.residuals, priors])
+        return _distance(self.space, self.internal, rows, residuals, self.noise)
+
+    @property
     def at_bounds(self) -> tuple[str, ...]:
         """Names of parameters that a bound keeps from fitting better."""
         slope = self.jacobian.T @ self.residuals
@@ -268,18 +279,24 @@ class _LeastSquares:
         rows = forward_jacobian(self.space, self.model, internal, predicted)
         rows = rows / self.observations.deviations[:, None]
         rows = np.concatenate([rows, self.space.prior_jacobian])
-        if self._remaining(internal, rows) < self.tolerance:
+        residuals = self.residuals(internal)
+        if _distance(self.space, internal, rows, residuals, self.noise) < self.tolerance:
             raise _NearOptimum(internal.copy())
         return rows
 
-    def _remaining(self, internal: np.ndarray, rows: np.ndarray) -> float:
-        """Length of the Gauss-Newton step within the bounds, in standard errors."""
-        residuals, (lower, upper) = self.residuals(internal), self.space.bounds
-        slope, near = rows.T @ residuals, _AT_BOUND * self.space.widths
-        distance = np.where(slope > 0, internal - lower, upper - internal)
-        held = (distance < near) & (slope != 0)
-        to_bounds = rows[:, held] @ distance[held]
-        singular_values, directions = principal_directions(rows[:, ~held])
-        seen = ~without_effect(singular_values, self.noise)
-        inside = directions[:, seen].T @ slope[~held] / singular_values[seen]
-        return float(np.hypot(np.linalg.norm(to_bounds), np.linalg.norm(inside)))
+
+def _distance(
+    space: ParameterSpace,
+    internal: np.ndarray,
+    rows: np.ndarray,
+    residuals: np.ndarray,
+    noise: float,
+) -> float:
+    """Length of the Gauss-Newton step within the bounds, in standard errors."""
+    (lower, upper), slope = space.bounds, rows.T @ residuals
+    to_bound = np.where(slope > 0, internal - lower, upper - internal)
+    held = (to_bound < _AT_BOUND * space.widths) & (slope != 0)
+    singular_values, directions = principal_directions(rows[:, ~held])
+    seen = ~without_effect(singular_values, noise)
+    inside = directions[:, seen].T @ slope[~held] / singular_values[seen]
+    return float(np.hypot(np.linalg.norm(rows[:, held] @ to_bound[held]), np.linalg.norm(inside)))

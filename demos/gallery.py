@@ -25,13 +25,14 @@ from PIL import Image
 from slides import SLIDES, Slide, draw_slide
 from studies import STUDIES, Study, draw_study
 
+from thermowear.case.starters import command_for
 from thermowear.output.report.figures import figure_text
 
 HERE = Path(__file__).resolve().parent
 CHOICES = (
-    ("hot_spots_3d", "bodies"),
+    ("hot_spots_3d", "fit", "tornado", "bodies"),
     ("hot_spots", "mode", "heat", "track", "cycles", "wear", "friction", "profile", "interface"),
-    ("coating",),
+    ("coating", "parameters", "distributions"),
 )
 SIDES = (
     1100,
@@ -107,8 +108,9 @@ def main() -> int:
 
 
 def compute(case: Path, folder: Path) -> int:
-    """Run a case in a separate process; returns its exit code."""
-    command = [sys.executable, "-m", "thermowear", "run", str(case), "-o", str(folder)]
+    """Compute a case in a separate process; returns its exit code."""
+    made_for = command_for(case.read_text(encoding="utf-8"))
+    command = [sys.executable, "-m", "thermowear", made_for, str(case), "-o", str(folder)]
     return subprocess.run([*command, "--overwrite"], check=False).returncode
 
 
@@ -206,9 +208,11 @@ def small_png(source: Path) -> bytes:
 def _entry(case: Path, folder: Path, pictures: Path) -> str:
     """Section of the page for a case; copies its pictures."""
     text = case.read_text(encoding="utf-8")
-    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    path = folder / "summary.json"
+    summary = json.loads(path.read_text(encoding="utf-8")) if path.is_file() else {}
     lines = [f"## {tomllib.loads(text)['title']}", "", *textwrap.wrap(leading_text(text), 100), ""]
-    lines += [f"    python3 -m thermowear run demos/{case.name}", "", figures(summary), ""]
+    lines += [f"    python3 -m thermowear {command_for(text)} demos/{case.name}", ""]
+    lines += [figures(summary), ""] if summary else []
     for names in CHOICES:
         for name in _drawn(folder, names, list(summary.get("contacts", {}))):
             (pictures / f"{case.stem}-{name}.png").write_bytes(small_png(folder / f"{name}.png"))

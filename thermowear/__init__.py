@@ -20,6 +20,7 @@ _SCRIPTING = (
 _LAZY = {
     **{"run": "simulation", "Result": "results", "Case": "case", "sweep": "app.sweeping"},
     **dict.fromkeys(("calibrate", "plan"), "app.calibration.calibrate"),
+    "study": "app.study.study",
     **dict.fromkeys(_SCRIPTING, "scripting"),
 }
 _ROOMS = (

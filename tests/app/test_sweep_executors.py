@@ -18,7 +18,7 @@ import pytest
 import thermowear as tw
 from thermowear.app.batch.pool import ProcessPool
 from thermowear.app.cli import main
-from thermowear.output.sweep.folder import JOURNAL
+from thermowear.output.variants.folder import JOURNAL
 
 from ..conftest import DEMOS
 

@@ -40,7 +40,7 @@ def made(path, over, surface=False, failing=()):
         swept(key, [c[k] for c in combinations], [_nested(key, c[k]) for c in combinations])
         for k, key in enumerate(over)
     ]
-    folder = SweepFolder(path, over, keys, overwrite=False)
+    folder = SweepFolder(path, over, keys, "sum", overwrite=False)
     for number, _ in enumerate(combinations, 1):
         variant = folder.variant(number)
         variant.mkdir()
@@ -118,7 +118,7 @@ def test_a_row_a_variant(tmp_path):
 def test_what_is_not_computed_yet_has_a_row(tmp_path):
     """requirement: the table is complete at any time."""
     keys = [swept("a", ["1", "2"], [{"a": 1}, {"a": 2}])]
-    folder = SweepFolder(tmp_path / "s", {"a": ["1", "2"]}, keys, overwrite=False)
+    folder = SweepFolder(tmp_path / "s", {"a": ["1", "2"]}, keys, "sum", overwrite=False)
     assert rows(tmp_path / "s") == [
         ["variant", "a", "status"],
         ["1", "1", "not computed"],
@@ -139,16 +139,16 @@ def test_a_sweep_replaces_only_a_sweep(tmp_path):
     (path / "2024" / "interface.csv").write_text("mine")
     keys = [swept("a", ["1"], [{"a": 1}])]
     with pytest.raises(CaseError, match="--overwrite"):
-        SweepFolder(path, {"a": ["1"]}, keys, overwrite=False)
+        SweepFolder(path, {"a": ["1"]}, keys, "sum", overwrite=False)
     assert len(rows(path)) == 4
-    SweepFolder(path, {"a": ["1"]}, keys, overwrite=True)
+    SweepFolder(path, {"a": ["1"]}, keys, "sum", overwrite=True)
     left = {str(entry.relative_to(path)) for entry in path.rglob("*") if entry.is_file()}
     assert left == {"run.json", "sweep.csv", "notes.txt", "002/notes.txt", "2024/interface.csv"}
     other = tmp_path / "run"
     other.mkdir()
     (other / "run.json").write_text('{"status": "done"}')
     with pytest.raises(CaseError, match="not a folder of a sweep"):
-        SweepFolder(other, {"a": ["1"]}, keys, overwrite=True)
+        SweepFolder(other, {"a": ["1"]}, keys, "sum", overwrite=True)
     assert not is_sweep(other)
 
 

@@ -9,9 +9,9 @@ import pytest
 
 from thermowear.bulk.mesh_motion import extended
 from thermowear.simulation.geometry_update.moving_faces import MovingFaces, movable_body
+from thermowear.simulation.points.worn_geometry import along
 from thermowear.simulation.system.building import build
 from thermowear.simulation.system.setup_cache import SetupCache
-from thermowear.simulation.system.worn_geometry import along
 from thermowear.timer import Phases
 from thermowear.verification.check import run_starter, starter
 

@@ -9,7 +9,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.bulk.direct_solver import DirectSolver
-from thermowear.simulation.analyses.run import Series, groups
+from thermowear.simulation.analyses.series import Series, groups
 from thermowear.simulation.from_case import analysis_of, model_of
 from thermowear.simulation.system.setup_cache import inputs
 
@@ -115,7 +115,7 @@ def test_cooling_needs_new_conduction_only(change, factors):
 @pytest.mark.parametrize(
     "change",
     ['bodies.block.young_modulus="100 GPa"', "contact.pressure_degree=1", slow("mesh.elements=5")]
-    + [slow('geometry.block_height="10 mm"'), slow('bodies.block.expansion="2e-5 1/K"')],
+    + [slow('geometry.block_height="10 mm"')],
 )
 def test_what_shares_nothing(change, factors):
     """
@@ -128,6 +128,22 @@ def test_what_shares_nothing(change, factors):
     result = run_in(series, second)
     assert len(factors) == 8
     same(result, tw.run(second))
+
+
+def test_expansion_needs_no_new_factor(factors):
+    """
+    requirement: expansion keeps the factors of elasticity and conduction, and gives the numbers of
+    a run of its own, in a group of its own as the response to temperatures is computed anew.
+    """
+    change = 'bodies.block.expansion="2e-5 1/K"'
+    first, second = block(RUNNING_IN), block(RUNNING_IN, change)
+    assert grouped([first, second]) == [[0], [1]]
+    series = Series()
+    before = run_in(series, first)
+    result = run_in(series, second)
+    assert len(factors) == 4
+    same(result, tw.run(second))
+    assert result.summary["shape_range_m"] != before.summary["shape_range_m"]
 
 
 def test_a_mesh_that_follows_the_contact_is_not_shared():

@@ -57,6 +57,18 @@ def parser() -> argparse.ArgumentParser:
     _add_flag(calibrate, "--overwrite", "replace existing results")
     _add_workers(calibrate)
 
+    study = _command(commands, "study", "propagate uncertain inputs, and rank their influence")
+    _add_case(study)
+    study.add_argument(
+        "--calibration",
+        metavar="DIR",
+        type=Path,
+        help="results of a calibration, whose parameters are uncertain inputs, too",
+    )
+    _add_flag(study, "--indices", "compute Sobol indices, too")
+    _add_output(study, "DIR", help="default: results/<case>-study")
+    _add_batch(study)
+
     _command(commands, "cases", "list the starter cases")
 
     init = _command(commands, "init", "write a starter case to edit")

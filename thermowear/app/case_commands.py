@@ -20,7 +20,7 @@ def cases(_) -> int:
 
 def init(chosen) -> int:
     """Write a starter case with the files it needs."""
-    from ..case.starters import starter_files, starter_text
+    from ..case.starters import command_for, starter_files, starter_text
 
     path = chosen.output or Path(f"{chosen.name}.toml")
     files = {path: starter_text(chosen.name).encode()}
@@ -32,7 +32,8 @@ def init(chosen) -> int:
             file.write_bytes(data)
         except OSError as error:
             raise CaseError(f"{file}: cannot be written: {error.strerror}") from None
-    print(f"wrote {' and '.join(map(str, files))}; next: python3 -m thermowear run {path}")
+    made_for = command_for(starter_text(chosen.name))
+    print(f"wrote {' and '.join(map(str, files))}; next: python3 -m thermowear {made_for} {path}")
     return 0
 
 

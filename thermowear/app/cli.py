@@ -117,6 +117,12 @@ def _sweep(chosen) -> int:
     return _batch(chosen, run_sweep)
 
 
+def _study(chosen) -> int:
+    from .study.command import run_study
+
+    return _batch(chosen, run_study)
+
+
 def _calibrate(chosen) -> int:
     from .calibration.command import run_calibration
 
@@ -143,6 +149,7 @@ def _shape(chosen) -> int:
 _COMMANDS = {
     "run": _run,
     "sweep": _sweep,
+    "study": _study,
     "calibrate": _calibrate,
     "cases": case_commands.cases,
     "init": case_commands.init,

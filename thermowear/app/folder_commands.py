@@ -11,11 +11,12 @@ def plot(chosen) -> int:
     """Draw the pictures of a results folder again."""
     from ..output.calibration import draw_calibration, is_calibration
     from ..output.pictures import make_pictures
+    from ..output.study import draw_study, is_study
     from ..output.sweep import draw_sweep, is_sweep
 
+    kinds = {is_sweep: draw_sweep, is_calibration: draw_calibration, is_study: draw_study}
     try:
-        draw = draw_sweep if is_sweep(chosen.folder) else make_pictures
-        draw = draw_calibration if is_calibration(chosen.folder) else draw
+        draw = next((draw for is_it, draw in kinds.items() if is_it(chosen.folder)), make_pictures)
         problems = draw(chosen.folder)
     except (OSError, ValueError) as error:
         raise CaseError(str(error)) from None
@@ -41,7 +42,9 @@ def report(chosen) -> int:
     """Write the report of a results folder."""
     from ..output.calibration import is_calibration, write_calibration_report
     from ..output.report import write_report
+    from ..output.study import is_study, write_study_report
 
-    write = write_calibration_report if is_calibration(chosen.folder) else write_report
+    kinds = {is_calibration: write_calibration_report, is_study: write_study_report}
+    write = next((write for is_it, write in kinds.items() if is_it(chosen.folder)), write_report)
     print(f"wrote {write(chosen.folder)}")
     return 0

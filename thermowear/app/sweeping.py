@@ -5,11 +5,8 @@ Modules that need dolfinx are imported in functions, as the distributing process
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
 import time
-import traceback
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass
@@ -20,12 +17,12 @@ from typing import Any
 from .. import load
 from ..case import AnyCase, as_plain
 from ..errors import CaseError, ComputationError
-from ..output.console import Terminal
 from ..output.folder import ResultsFolder
 from ..output.sweep import SweepFolder, draw_sweep, swept
 from ..results import Result
 from .batch.computing import Lost, Stopped, compute
 from .batch.executors import Choice, Crew, Workers
+from .batch.reporting import BatchReport, checksum_of, message_of, status_of
 from .batch.variants import Variant, grouped, parse_over, variants, written
 
 
@@ -139,29 +136,30 @@ def _run_with(crew: Crew, chosen) -> int:
     path = chosen.output or Path("results") / f"{chosen.case.stem}-sweep"
     checksum = checksum_of(tables)
     folder = SweepFolder(path, over, keys, checksum, chosen.overwrite, chosen.resume)
-    report = _Report(folder, found)
+    report = BatchReport(folder, lambda number: _name(found[number - 1]))
     left = [k for k, variant in enumerate(found) if variant.number not in folder.ended]
     jobs = {k: Job(k + 1, tables[k], folder.variant(k + 1)) for k in left}
-    try:
+
+    def received(outcome: Ended | Lost) -> None:
+        if isinstance(outcome, Lost):
+            outcome = Ended(outcome.task.number, f"failed: {outcome.reason}", None, 0.0)
+        folder.add(outcome.number, outcome.status, outcome.summary, outcome.seconds)
+        report.ended(outcome.number, outcome.status, outcome.seconds)
+
+    with report.closing(lambda: draw_sweep(folder.path) if chosen.pictures else None):
         groups = grouped([found[k].case for k in left])
         tasks = [[jobs[left[k]] for k in group] for group in groups]
         workers = crew.workers(len(groups), len(left)) if left else Workers(None)
-        compute(tasks, compute_variant, report.received, workers.executor, workers.count)
-    except BaseException as error:
-        interrupted = isinstance(error, KeyboardInterrupt)
-        report.close(chosen.pictures, "interrupted" if interrupted else "failed", str(error))
-        raise
+        compute(tasks, compute_variant, received, workers.executor, workers.count)
     message = report.failures()
-    report.close(chosen.pictures, "failed" if message else "done", message)
     if message:
         raise ComputationError(message)
     return 0
 
 
-def checksum_of(tables: Sequence[dict[str, Any]]) -> str:
-    """Checksum of cases."""
-    text = json.dumps(tables, sort_keys=True, default=str)
-    return hashlib.sha256(text.encode()).hexdigest()
+def _name(variant: Variant) -> str:
+    values = ", ".join(f"{key}={value}" for key, value in variant.values.items())
+    return f"variant {variant.number} ({values})"
 
 
 def compute_variant(series, job: Job) -> Ended:
@@ -184,68 +182,10 @@ def compute_variant(series, job: Job) -> Ended:
             summary, problem = result.summary, result.stopped
         except BaseException as error:
             problem = error
-        folder.close(_status(problem).partition(":")[0], _message(problem))
+        folder.close(status_of(problem).partition(":")[0], message_of(problem))
     except (CaseError, OSError) as error:  # of the folder; an interrupt still ends the sweep
         problem = problem if isinstance(problem, KeyboardInterrupt) else error
-    ended = Ended(job.number, _status(problem), summary, time.perf_counter() - began)
+    ended = Ended(job.number, status_of(problem), summary, time.perf_counter() - began)
     if isinstance(problem, KeyboardInterrupt):
         raise Stopped(ended)
     return ended
-
-
-def _status(problem: BaseException | None) -> str:
-    if problem is None:
-        return "done"
-    if isinstance(problem, KeyboardInterrupt):
-        return "interrupted"
-    expected = isinstance(problem, CaseError | ComputationError)
-    return f"failed: {problem}" if expected else f"failed: {type(problem).__name__}: {problem}"
-
-
-def _message(problem: BaseException | None) -> str:
-    """Message for the record of the run, with the traceback of unexpected errors."""
-    if problem is None or isinstance(problem, CaseError | ComputationError | KeyboardInterrupt):
-        return str(problem or "")
-    return "".join(traceback.format_exception(problem))
-
-
-class _Report:
-    """Reporting of finished variants to the folder of the sweep and to the console."""
-
-    def __init__(self, folder: SweepFolder, found: list[Variant]):
-        self._folder = folder
-        self._found = found
-        self._console = Terminal(highlight=False)
-        self._began = time.perf_counter()
-
-    def received(self, outcome: Ended | Lost) -> None:
-        """Record a finished variant, or one whose process has died."""
-        if isinstance(outcome, Lost):
-            outcome = Ended(outcome.task.number, f"failed: {outcome.reason}", None, 0.0)
-        self._folder.add(outcome.number, outcome.status, outcome.summary, outcome.seconds)
-        self._console.print(
-            f"{len(self._folder.ended)}/{len(self._found)}   {self._name(outcome.number)}   "
-            f"{outcome.status}, {outcome.seconds:.3f} s",
-            markup=False,
-            soft_wrap=True,
-        )
-
-    def failures(self) -> str:
-        """Failures in one line; empty if all variants succeeded."""
-        failed = {k: status for k, status in sorted(self._folder.ended.items()) if status != "done"}
-        if not failed:
-            return ""
-        first, status = next(iter(failed.items()))
-        count = f"{len(failed)} of {len(self._found)} variants failed"
-        return f"{count}; {self._name(first)}: {status.removeprefix('failed: ')}"
-
-    def close(self, pictures: bool, status: str, message: str) -> None:
-        """Record the end of the sweep, and draw its pictures."""
-        self._folder.close(status, message, time.perf_counter() - self._began)
-        if pictures and any(status == "done" for status in self._folder.ended.values()):
-            draw_sweep(self._folder.path)
-        self._console.print(f"results in {self._folder.path}", markup=False, soft_wrap=True)
-
-    def _name(self, number: int) -> str:
-        values = self._found[number - 1].values
-        return f"variant {number} ({', '.join(f'{k}={v}' for k, v in values.items())})"

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from ..errors import ComputationError
-from ..model.analyses import TransientAnalysis
+from ..model.analyses import TimedAnalysis, TransientAnalysis
 from .experiments import Experiment
 from .readings import summary_numbers
 
@@ -74,10 +74,11 @@ def predict(series, run: CandidateRun) -> Prediction:
     try:
         case = with_accurate_mesh(experiment.case(run.overrides), series.comm)
         analysis = analysis_of(case)
-        if isinstance(analysis, TransientAnalysis):
+        if isinstance(analysis, TimedAnalysis):
             if experiment.ends_with_times():
                 analysis = replace(analysis, end_time=max(experiment.times), until=None)
             analysis = replace(analysis, hits=experiment.times, steps=run.steps)
+        if isinstance(analysis, TransientAnalysis):
             analysis = replace(analysis, compares=experiment.compares_with_steady())
         result = series.run(model_of(case), analysis)
         if result.stopped is not None:
@@ -85,7 +86,7 @@ def predict(series, run: CandidateRun) -> Prediction:
         values = [one.reading.of(result) for one in experiment.measurements]
     except ComputationError as error:
         return run.failed(str(error))
-    rows = result.history if isinstance(analysis, TransientAnalysis) else []
+    rows = result.history if isinstance(analysis, TimedAnalysis) else []
     return Prediction(
         run.number,
         np.concatenate(values),

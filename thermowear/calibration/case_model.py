@@ -44,9 +44,9 @@ class CaseModel:
     ):
         self._table, self._experiments, self._runner = table, list(experiments), runner
         self._known: dict[str, list[Prediction]] = {}
-        self._follows = True
+        self._follows = all(one.smooth for one in experiments)
         self.runs = 0
-        if any(one.needs_times() for one in experiments):
+        if not all(one.located for one in experiments):
             self._find_times()
 
     @property
@@ -130,7 +130,7 @@ class CaseModel:
         first = np.array([p.start.number for p in self._table.parameters.values()])
         found = self._at(first)
         for k, one in enumerate(found):
-            if self._experiments[k].needs_times():
+            if not self._experiments[k].located:
                 if one.failure:
                     raise ComputationError(one.failure)
                 if not len(one.distances):

@@ -10,14 +10,15 @@ import numpy as np
 
 from ..case import AnyCase, as_plain, load
 from ..case.studies.calibration import CalibrationTable
-from ..case.tables.analyses import Timed
+from ..case.tables.analyses import Fretting, Timed
 from ..errors import CaseError
 from .measurement import Measurement
 
 _OTHER = ("calibrate", "study", "title")
+_EQUAL = 1e-9
+"""Relative difference of times that are hit by one step."""
 _STEADY = ("distance_from_steady", "rigid_wear_")
 """Numbers of the summary that refer to the steady state."""
-_ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
@@ -31,11 +32,17 @@ class Experiment:
     measurements : tuple of Measurement
     times : tuple of float
         Times that the steps hit exactly [s].
+    located : bool
+        False until the times of all sliding distances are known.
+    smooth : bool
+        False if runs choose cycle jumps of their own, even with equal time steps.
     """
 
     tables: dict[str, Any]
     measurements: tuple[Measurement, ...]
     times: tuple[float, ...] = ()
+    located: bool = True
+    smooth: bool = True
 
     @property
     def count(self) -> int:
@@ -51,13 +58,9 @@ class Experiment:
         """
         return load(self.tables, overrides)
 
-    def needs_times(self) -> bool:
-        """Test whether times of measurements at sliding distances are not known yet."""
-        return any("sliding_distance" in one.reading.at for one in self.measurements)
-
     def ends_with_times(self) -> bool:
         """Test whether nothing is measured at the end of the run, but all at given times."""
-        return bool(self.times) and all(
+        return self.located and all(
             {"time", "sliding_distance"} & one.reading.at.keys() for one in self.measurements
         )
 
@@ -76,8 +79,9 @@ class Experiment:
         """
         wanted = [m.reading.at.get("sliding_distance", np.zeros(0)) for m in self.measurements]
         found = np.interp(np.concatenate(wanted), distance, time)  # exact at a constant speed
-        found[np.isclose(found, time[-1], rtol=_ROUNDING, atol=0.0)] = time[-1]
-        return replace(self, times=_distinct([*self.times, *map(float, found)]))
+        found[np.isclose(found, time[-1], rtol=_EQUAL, atol=0.0)] = time[-1]
+        times = _distinct([*self.times, *map(float, found)])
+        return replace(self, times=times, located=True)
 
 
 def experiments(case: AnyCase, measurements: Sequence[Measurement]) -> list[Experiment]:
@@ -109,29 +113,36 @@ def _experiment(case: AnyCase, members: list[Measurement]) -> Experiment:
     """Experiment that records the faces at the times at which they were measured."""
     tables = {key: table for key, table in as_plain(case).items() if key not in _OTHER}
     times = [float(t) for one in members for t in one.reading.times]
-    if times and not isinstance(case.analysis, Timed):
+    if times and not isinstance(case.analysis, Timed | Fretting):
         raise CaseError(
             f"calibrate.observations: {members[0].label} has times; the analysis "
             f"{case.analysis.type} has none"
         )
-    if isinstance(case.analysis, Timed):
+    if isinstance(case.analysis, Timed | Fretting):
         shown = [float(t) for one in members if one.reading.places for t in one.reading.times]
         analysis = tables["analysis"] | {
             "frames": 0,
             "output_times": [f"{t!r} s" for t in _distinct(shown)],
         }
-        end = case.analysis.end_time
-        if times and (end is None or max(times) > end):
+        end = getattr(case.analysis, "end_time", None)
+        if times and end is not None and max(times) > end:
             raise CaseError(
                 f"calibrate.observations: {members[0].label} goes to {max(times):g} s; the "
                 "analysis ends before (analysis.end_time)"
             )
         tables = tables | {"analysis": analysis}
-    return Experiment(tables, tuple(members), _distinct(times))
+    located = not any("sliding_distance" in one.reading.at for one in members)
+    smooth = not (isinstance(case.analysis, Fretting) and case.wear)
+    return Experiment(tables, tuple(members), _distinct(times), located, smooth)
 
 
 def _distinct(times: Sequence[float]) -> tuple[float, ...]:
-    return tuple(sorted({t for t in times if t > 0.0}))
+    """Times in order, without the start and without those that are equal up to rounding [s]."""
+    found: list[float] = []
+    for time in sorted(times):
+        if time > (found[-1] * (1 + _EQUAL) if found else 0.0):
+            found.append(time)
+    return tuple(found)
 
 
 def overrides_of(table: CalibrationTable, values: np.ndarray) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -12,15 +13,14 @@ from ..errors import CaseError, ComputationError
 from ..results import Result
 from ..results.points import InterfaceFields, part_of
 from ..results.quantity import TABLES, Quantity, split_key, table_of
-from ..results.summary_keys import of_key
+from ..results.summary_keys import GROUPS
 
 ALONG = ("time", "sliding_distance", "cycle")
 """Columns that rows of a history are found by."""
 PLACES = ("x", "y", "z", "s")
 """Columns that points of a contact are found by."""
-_ROWS = ("history", "heat", "cycles", "loads", "contacts", "probes")
-"""Tables of rows, in the order in which a quantity is looked for."""
-_DENSITY = "density"
+_ROWS = ("history", "heat", "loads", "cycles", "contacts", "probes")
+"""Tables of rows, in the order in which a quantity is looked for; by cycles the table of these."""
 _MASSES = {f"worn_mass_{k}": (f"wear_volume_{k}", k) for k in (1, 2)}
 
 
@@ -92,8 +92,8 @@ class Reading:
         if name in result.summary.get("probes", {}):
             name, contact = "temperature", name
         tables = result.tables()
-        for stem in _ROWS:
-            columns = TABLES[stem].columns if stem in TABLES else {}
+        for stem in ["cycles"] if along == "cycle" else _ROWS:
+            columns = TABLES[stem].columns
             if stem in tables and {name, along} <= columns.keys():
                 rows = _of_part(tables[stem], contact, result)
                 x, values = (np.array([getattr(r, n) for r in rows]) for n in (along, name))
@@ -139,18 +139,15 @@ def summary_numbers(summary: dict[str, Any], above: str = "") -> dict[str, float
     return found
 
 
-def known_quantities() -> dict[str, Quantity]:
-    """Quantities of all tables and of the summary, by name."""
+def known_quantities(at_places: bool) -> dict[str, Quantity]:
+    """Quantities at points of the contact, or else of rows and of the summary, by name."""
+    if at_places:
+        return dict(TABLES["interface"].columns)
     found: dict[str, Quantity] = {}
-    for table in TABLES.values():
-        for name, quantity in table.columns.items():
-            found.setdefault(name, quantity)
-    from ..results.summary_keys import GROUPS
-
-    for group in GROUPS.values():
-        for quantity in group:
-            found.setdefault("_".join(split_key(quantity.header)[0].split()), quantity)
-    return found
+    for stem in _ROWS:
+        found = dict(TABLES[stem].columns) | found
+    summary = chain.from_iterable(GROUPS.values())
+    return {"_".join(split_key(one.header)[0].split()): one for one in summary} | found
 
 
 def _of_part(rows: list, contact: str | None, result: Result) -> list:
@@ -228,6 +225,6 @@ def reading(
             raise CaseError(f"{name}: needs the density of the body")
         mass = Quantity(f"{name}_kg", f"worn mass, body {body}", "kg", "kg")
         return Reading(mass, volume, count, at, contact, densities[body])
-    known = known_quantities()
-    quantity = known.get(name) or (known.get("temperature_1") if at else None) or of_key(name)
+    known = known_quantities(not at.keys().isdisjoint(PLACES))
+    quantity = known.get(name) or Quantity(f"{name}_K", f"temperature, {name}", "K", "°C")
     return Reading(quantity, name, count, at, contact)

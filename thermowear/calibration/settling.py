@@ -39,7 +39,7 @@ class Suggestion:
 def suggestions(
     space: ParameterSpace, model: CaseModel, values: np.ndarray, found: Identifiability
 ) -> tuple[Suggestion, ...]:
-    """Other quantities of the same runs, or else the same ones under other conditions.
+    """Other quantities of the same runs, and the same ones under other conditions.
 
     Parameters
     ----------
@@ -56,17 +56,14 @@ def suggestions(
     offsets = step * np.eye(len(space))
     others, opposite = (list(space.admissible(internal + s * offsets)) for s in (1, -1))
     suggested: dict[str, Suggestion] = {}
-    candidates = _numbers(model, values, [others, opposite], step)
-    conditions: dict[str, tuple[np.ndarray, np.ndarray]] | None = None
-    for direction in found.null.T:
-        ranked = settling(direction, candidates)
-        if not ranked or ranked[0].change < _WORTH:
-            if conditions is None:
-                conditions = _conditions(model, values, others, step)
-            ranked = settling(direction, conditions)
-        for one in ranked[:_MOST]:
-            if one.change >= _WORTH:
-                suggested.setdefault(one.name, Suggestion(one.name, one.change))
+    for candidates in (
+        _numbers(model, values, [others, opposite], step),
+        _conditions(model, values, others, step),
+    ):
+        for direction in found.null.T:
+            for one in settling(direction, candidates)[:_MOST]:
+                if one.change >= _WORTH:
+                    suggested.setdefault(one.name, Suggestion(one.name, one.change))
     return tuple(suggested.values())
 
 

@@ -80,3 +80,35 @@ class SobolProduct:
         """Total indices, shape (d,)."""
         others = np.prod(1 + self._shares) / (1 + self._shares)
         return self._shares * others / self.variance
+
+
+@dataclass(frozen=True)
+class UniformProduct:
+    """Product of independent inputs, each uniform between two positive ends.
+
+    Attributes
+    ----------
+    ends : tuple of (float, float)
+    """
+
+    ends: tuple[tuple[float, float], ...]
+
+    def __call__(self, x: np.ndarray) -> np.ndarray:
+        """Values at points of shape (…, d)."""
+        return np.prod(x, axis=-1)
+
+    @property
+    def _shares(self) -> np.ndarray:
+        """Variances of the inputs, relative to the squares of their means."""
+        low, high = np.array(self.ends).T
+        return (high - low) ** 2 / 3 / (high + low) ** 2
+
+    @property
+    def first(self) -> np.ndarray:
+        """First-order indices, shape (d,)."""
+        return self._shares / (np.prod(1 + self._shares) - 1)
+
+    @property
+    def total(self) -> np.ndarray:
+        """Total indices, shape (d,)."""
+        return self.first * np.prod(1 + self._shares) / (1 + self._shares)

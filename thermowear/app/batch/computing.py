@@ -29,7 +29,7 @@ class BatchWork(Protocol):
 
         Parameters
         ----------
-        series : simulation.analyses.run.Series
+        series : simulation.analyses.series.Series
             Series with the set-up results of earlier cases.
         task : object
         """
@@ -238,7 +238,7 @@ def new_series(alone: bool = False):
         start_petsc()
         from mpi4py import MPI
 
-        from ...simulation.analyses.run import Series
+        from ...simulation.analyses.series import Series
     return Series(MPI.COMM_SELF if alone else None)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -80,14 +80,14 @@ def variants(
     return found
 
 
-def grouped(cases: Sequence[AnyCase]) -> list[list[int]]:
-    """Numbers of the cases that share set-up results; see `simulation.analyses.run.groups`."""
+def grouped(cases: Iterable[AnyCase]) -> list[list[int]]:
+    """Numbers of the cases that share set-up results; see `simulation.analyses.series.groups`."""
     with DeferredSignals():
         start_petsc()
-        from ...simulation.analyses.run import groups
+        from ...simulation.analyses.series import groups
         from ...simulation.from_case import model_of
 
-    return groups([model_of(case) for case in cases])
+    return groups(model_of(case) for case in cases)
 
 
 def parse_over(texts: Sequence[str]) -> dict[str, list[str]]:

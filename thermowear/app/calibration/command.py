@@ -52,6 +52,9 @@ def _run_with(crew: Crew, chosen) -> int:
         if chosen.pictures:
             for problem in draw_calibration(path):
                 console.print(f"note: {problem}", markup=False, soft_wrap=True)
+    except CaseError:  # before anything was computed
+        folder.abandon()
+        raise
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
         folder.close("interrupted" if interrupted else "failed", str(error))

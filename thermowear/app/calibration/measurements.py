@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,12 +11,13 @@ from ...calibration.readings import PLACES, known_quantities, reading
 from ...case import AnyCase
 from ...case.studies.calibration import ObservationTable
 from ...case.values.csv_columns import Columns, column_names, read_columns
-from ...case.values.units import parse
+from ...case.values.units import parse, registry, unit_of
 from ...errors import CaseError
 from ..batch.variants import written
 
 _AT = {**dict.fromkeys(PLACES, "mm"), "time": "s", "sliding_distance": "m", "cycle": ""}
 """Columns of times and places, with a suitable unit."""
+_SI = {key: {"mm": "m"}.get(unit, unit) for key, unit in _AT.items()}
 _DEVIATION = "deviation"
 _MASS = {f"worn_mass_{k}": "g" for k in (1, 2)}
 
@@ -61,11 +61,16 @@ def _of_file(
     case: AnyCase, name: str, own: ObservationTable, path: Path, planned: bool
 ) -> list[Measurement]:
     try:
-        names = [n for n in column_names(path) if n not in _AT and n != _DEVIATION]
+        heads = column_names(path)
+        names = [n for n in heads if n not in _AT and n != _DEVIATION]
         quantities = list(dict.fromkeys(n.removesuffix(f"_{_DEVIATION}") for n in names))
+        if planned and own.quantity is not None and not quantities:
+            quantities = ["value"]
         if not quantities:
             raise ValueError(f"{path.name} has no column of a measured quantity")
-        columns = read_columns(path, _known_units(case, own, quantities), ordered=False)
+        at_places = not set(heads).isdisjoint(PLACES)
+        units = _known_units(case, own, quantities, at_places)
+        columns = read_columns(path, units, ordered=False)
         if not planned and (missing := [q for q in quantities if q not in columns.values]):
             raise ValueError(f"{columns.name} has no column {missing[0]}")
         return [_measurement(case, name, own, columns, q, len(quantities)) for q in quantities]
@@ -73,10 +78,13 @@ def _of_file(
         raise CaseError(f"calibrate.observations.{name}: {error}") from None
 
 
-def _known_units(case: AnyCase, own: ObservationTable, columns: list[str]) -> dict[str, str]:
+def _known_units(
+    case: AnyCase, own: ObservationTable, columns: list[str], at_places: bool
+) -> dict[str, str]:
     """Columns that a file may have, with a suitable unit each."""
-    known = {name: one.si for name, one in known_quantities().items() if name not in _AT} | _MASS
-    known |= dict.fromkeys(probes_of(case), "degC")
+    quantities = known_quantities(at_places).items()
+    known = {name: one.si for name, one in quantities if name not in _AT}
+    known |= {} if at_places else _MASS | dict.fromkeys(probes_of(case), "degC")
     if own.quantity is not None:
         if own.quantity not in known:
             raise ValueError(f"quantity: {own.quantity} is unknown; see docs/results.md")
@@ -96,26 +104,26 @@ def _measurement(
     case: AnyCase, name: str, own: ObservationTable, columns: Columns, column: str, several: int
 ) -> Measurement:
     quantity = own.quantity or column if column == "value" else column
-    at = {key: _in_si(columns.values[key]) for key in columns.values if key in _AT}
+    at = {key: _in_si(columns, key, unit) for key, unit in _SI.items() if key in columns.values}
     count = len(columns.lines)
     given = reading(quantity, at, count, own.contact, _densities(case))
     values = np.full(count, np.nan)
     if column in columns.values:
-        values = _in_si(columns.values[column])
+        values = _in_si(columns, column, given.quantity.si)
     label = f"{name}: {quantity}" if several > 1 else name
-    deviations = _deviations(columns, column, values, own)
+    deviations = _deviations(columns, column, values, own, given.quantity.si)
     changes = tuple(f"{key}={written(value)}" for key, value in own.set.items())
     relative = (own.deviation.relative if own.deviation else None) or 0.0
     return Measurement(label, given, values, deviations, changes, columns.name, relative)
 
 
 def _deviations(
-    columns: Columns, column: str, values: np.ndarray, own: ObservationTable
+    columns: Columns, column: str, values: np.ndarray, own: ObservationTable, unit: str
 ) -> np.ndarray:
     """Standard deviations: those of a column, or the common one of the case [SI]."""
     for key in (f"{column}_{_DEVIATION}", _DEVIATION):
         if key in columns.values:
-            found = _in_si(columns.values[key], difference=True)
+            found = _in_si(columns, key, unit, difference=True)
             break
     else:
         if own.deviation is None:
@@ -123,7 +131,8 @@ def _deviations(
                 f"{columns.name} has no column {_DEVIATION}; give one, or the key deviation"
             )
         if own.deviation.absolute is not None:
-            found = np.full(len(values), _in_si([own.deviation.written()], difference=True)[0])
+            given = _number(own.deviation.written(), unit, difference=True)
+            found = np.full(len(values), given)
         else:
             assert own.deviation.relative is not None
             found = own.deviation.relative * np.abs(values)
@@ -132,19 +141,25 @@ def _deviations(
     return found
 
 
-def _in_si(values: Sequence[str | float], difference: bool = False) -> np.ndarray:
-    """Numbers in SI; of a difference without the offset of a temperature scale."""
+def _in_si(columns: Columns, key: str, unit: str, difference: bool = False) -> np.ndarray:
+    """Numbers of a column in a unit; of differences without the offset of a temperature scale."""
+    try:
+        return np.array([_number(value, unit, difference) for value in columns.values[key]])
+    except ValueError as error:
+        raise ValueError(f"{columns.name}: {key}: {error}") from None
 
-    def number(value: str | float) -> float:
-        if not isinstance(value, str):
-            return value
-        base = float(parse(value, "1 m").to_base_units().magnitude)
-        if difference:
-            unit = value.partition(" ")[2]
-            base -= float(parse(f"0 {unit}", "1 m").to_base_units().magnitude)
-        return base
 
-    return np.array([number(value) for value in values])
+def _number(value: str | float, unit: str, difference: bool) -> float:
+    if not isinstance(value, str):
+        return value
+    given = parse(value, f"1 {unit}")
+    if not given.is_compatible_with(unit_of(unit)):
+        raise ValueError(f"found the unit {given.units:~P}; must be in {unit}")
+    found = given.to(unit_of(unit)).magnitude
+    if difference:
+        zero = registry().Quantity(0.0, given.units)
+        found -= zero.to(unit_of(unit)).magnitude
+    return float(found)
 
 
 def _densities(case: AnyCase) -> dict[int, float]:

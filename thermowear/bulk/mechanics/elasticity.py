@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from petsc4py import PETSc
@@ -131,6 +131,14 @@ class Elasticity:
     def nodes(self) -> np.ndarray:
         """Coordinates of the owned nodes, shape (n_owned / gdim, gdim) [m]."""
         return self.spaces.nodes()
+
+    def expanding(self, materials: dict[str, ElasticMaterial]) -> Elasticity:
+        """Same bodies with the expansion of other materials, and the same solver."""
+        each = []
+        for body in self.each:
+            λ, μ, _ = body.lame
+            each.append(replace(body, lame=(λ, μ, _lame(body.body, self.kinematics, materials)[2])))
+        return replace(self, each=tuple(each))
 
     def thermal_load(self, temperatures: Spaces, only: str | None = None) -> ThermalForces:
         """Nodal loads of a temperature rise, ``∫ m T tr ε(δu) dV`` [N].

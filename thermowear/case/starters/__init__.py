@@ -28,6 +28,12 @@ def starter_text(name: str) -> str:
     return (resources.files(__name__) / f"{name}.toml").read_text("utf-8")
 
 
+def command_for(text: str) -> str:
+    """Command that a case file is made for: that of its own table, or ``run``."""
+    tables = tomllib.loads(text)
+    return next((name for name in ("calibrate", "study") if name in tables), "run")
+
+
 def starter_files(name: str) -> dict[str, bytes]:
     """Files that a starter case reads from its own folder, by name.
 
@@ -36,6 +42,9 @@ def starter_files(name: str) -> dict[str, bytes]:
     CaseError
         If no starter case has this name.
     """
-    geometry = tomllib.loads(starter_text(name))["geometry"]
-    paths = [geometry["path"]] if "path" in geometry else geometry.get("paths", {}).values()
+    tables = tomllib.loads(starter_text(name))
+    geometry = tables["geometry"]
+    paths = [geometry["path"]] if "path" in geometry else [*geometry.get("paths", {}).values()]
+    observations = tables.get("calibrate", {}).get("observations", {}).values()
+    paths += [own["file"] for own in observations if "file" in own]
     return {path: (resources.files(__name__) / path).read_bytes() for path in paths}

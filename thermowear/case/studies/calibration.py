@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from ..values.percentages import Percentage
 from ..values.section import KeyFault, Number, Section, UserFile
-from .scalars import ScalarKey, SpreadKey
+from .scalars import Scalar, ScalarKey, SpreadKey
 
 _NAME = re.compile(r"[^\W\d]\w*")
 _IN_BRACES = re.compile(r"\{([^{}]*)\}")
@@ -164,10 +164,7 @@ class CalibrationTable(Section):
         found = []
         for name, table in self.parameters.items():
             if table.key is not None:
-                number, unit = values[name], table.start.unit
-                found.append(
-                    f'{table.key}="{number!r} {unit}"' if unit else f"{table.key}={number!r}"
-                )
+                found.append(Scalar(values[name], table.start.unit).override(table.key))
         for key, text in self.set.items():
             filled = _IN_BRACES.sub(lambda m: repr(values[m[1]]), text)
             bare = _IN_BRACES.fullmatch(text) is not None

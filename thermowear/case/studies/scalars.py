@@ -33,6 +33,10 @@ class Scalar:
         """Value as in a case file."""
         return f"{self.number!r} {self.unit}" if self.unit else self.number
 
+    def override(self, key: str) -> str:
+        """Change ``KEY=VALUE`` of a case."""
+        return f'{key}="{self.written()}"' if self.unit else f"{key}={self.number!r}"
+
     def in_unit_of(self, other: Scalar) -> float:
         """Number in the unit of another one.
 

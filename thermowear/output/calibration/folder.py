@@ -50,6 +50,7 @@ class CalibrationFolder:
     def __init__(self, path: Path, tables: dict[str, Any], overwrite: bool):
         self.path = path
         self._run = run_started(calibration=True)
+        self._made = not path.exists()
         try:
             path.mkdir(parents=True, exist_ok=True)
             self._lock = Lock(path)
@@ -91,6 +92,14 @@ class CalibrationFolder:
         """Record how it ended: ``done``, ``failed`` or ``interrupted``."""
         self._run |= run_ended(status, message)
         write_json(self.path / "run.json", self._run)
+        self._lock.release()
+
+    def abandon(self) -> None:
+        """Remove the files of a calibration whose case or data prove invalid."""
+        for name in (RESOLVED, "run.json"):
+            (self.path / name).unlink(missing_ok=True)
+        if self._made:
+            self.path.rmdir()
         self._lock.release()
 
     def _clear(self, overwrite: bool) -> None:

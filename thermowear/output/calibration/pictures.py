@@ -35,12 +35,12 @@ def draw_calibration(folder: Path) -> list[str]:
         If the folder contains no calibration.
     """
     record, rows = read_calibration(folder)
+    if record.get("planned"):
+        return []
     groups: dict[str, list[dict[str, str]]] = {}
     for row in rows:
         groups.setdefault(row["observation"], []).append(row)
     observed = [_Group(label, members) for label, members in groups.items()]
-    if record.get("planned"):
-        return []
     _draw_fit(observed, folder / "fit.png")
     _draw_residuals(observed, folder / "residuals.png")
     known = [k for k, one in enumerate(record["parameters"].values()) if _is_known(one)]
@@ -89,7 +89,9 @@ def _quantity(header: str, values: np.ndarray) -> Quantity:
     """Quantity by its header, in a unit that suits its values."""
     known = {q.header: q for table in TABLES.values() for q in table.columns.values()}
     found = known.get(header) or of_key(header)
-    if found.unit in ("°C", "1"):
+    if found.si == "K":
+        return found.shown_in("°C")
+    if found.unit == "1":
         return found
     unit = multiple(found.si, float(np.nanmax(np.abs(values))))[0]
     return from_key(header, found.label, unit)
@@ -181,6 +183,8 @@ def _draw_parameters(
                     _draw_pair(axis, column, row, covariance[np.ix_([j, i], [j, i])], values)
                     if j == 0:
                         axis.set_ylabel(row.label)
+                    else:
+                        axis.tick_params(labelleft=False)
                 if i == count - 1:
                     axis.set_xlabel(column.label)
 

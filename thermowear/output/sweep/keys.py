@@ -5,14 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import reduce
 from textwrap import wrap
 from typing import Any
 
-_QUANTITY = re.compile(r'\s*"?([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^"\d\s][^"]*?)?"?\s*')
-_SI = {"m", "Pa", "N", "s", "rad", "Hz", "W", "K", "kg", "J"}
+from ..variants.units import QUANTITY, in_header, in_pictures, in_si, value_at
+
 _LONG = 44  # characters in a line of a legend
-_SIGNS = {"degC": "°C", "um": "µm", "^2": "²", "^3": "³", "**2": "²", "**3": "³"}
 
 
 @dataclass(frozen=True)
@@ -66,15 +64,15 @@ def swept(key: str, written: Sequence[str], tables: Sequence[dict[str, Any]]) ->
     tables : sequence of dict
         Case of each variant with all default values.
     """
-    resolved: list[Any] = [reduce(_entry, key.split("."), table) for table in tables]
+    resolved: list[Any] = [value_at(key, table) for table in tables]
     if all(isinstance(value, int | float) and not isinstance(value, bool) for value in resolved):
         return Swept(key, key, tuple(resolved))
-    found = [_in_si(value) for value in resolved]
+    found = [in_si(value) for value in resolved]
     units = {unit for _, unit in filter(None, found)}
     if None in found or not units:
         return Swept(key, key, tuple(text.strip() for text in written))
     unit = units.pop() if len(units) == 1 else "SI"
-    return Swept(key, f"{key}_{_in_name(unit)}", tuple(pair[0] for pair in found if pair))
+    return Swept(key, f"{key}_{in_header(unit)}", tuple(pair[0] for pair in found if pair))
 
 
 def axis(key: str, written: Sequence[str], values: Sequence[float | str], header: str) -> Axis:
@@ -90,48 +88,14 @@ def axis(key: str, written: Sequence[str], values: Sequence[float | str], header
     header : str
         Header of the column.
     """
-    found = [_QUANTITY.fullmatch(text) for text in written]
+    found = [QUANTITY.fullmatch(text) for text in written]
     words = tuple("\n".join(wrap(re.sub("[{}\"']", "", text).strip(), _LONG)) for text in written)
     units = {match[2] or "" for match in found if match}
     if None not in found and len(units) == 1:
-        unit = reduce(lambda text, sign: text.replace(*sign), _SIGNS.items(), units.pop())
+        unit = in_pictures(units.pop())
         numbers = tuple(float(match[1]) for match in found if match)
         return Axis(key, f"{key} [{unit}]" if unit else key, numbers, words)
     if all(isinstance(value, float) for value in values):
         unit = header.removeprefix(key).lstrip("_").replace("_", " ")
         return Axis(key, f"{key} [{unit}]" if unit else key, tuple(map(float, values)), words)
     return Axis(key, key, None, words)
-
-
-def _entry(table: Any, key: str) -> Any:
-    """Entry of a table; None if there is none."""
-    return table.get(key.strip()) if isinstance(table, dict) else None
-
-
-def _in_si(text: Any) -> tuple[float, str] | None:
-    """Number and SI unit of a quantity of a resolved case; None if it is not a quantity."""
-    match = _QUANTITY.fullmatch(text) if isinstance(text, str) else None
-    if match is None or match[2] is None:
-        return None
-    if set(re.findall(r"[A-Za-z]+", match[2])) <= _SI:
-        return float(match[1]), match[2]
-    return _converted(text)
-
-
-def _converted(text: str) -> tuple[float, str] | None:
-    """Number and SI unit of a wear coefficient, which a resolved case keeps in its given unit."""
-    from ...case.values.units import parse
-
-    try:
-        value = parse(text, "")
-    except ValueError:
-        return None
-    value = value.to("1/Pa") if value.is_compatible_with("1/Pa") else value.to_base_units()
-    return float(value.magnitude), f"{value.units:~C}"
-
-
-def _in_name(unit: str) -> str:
-    """Unit as part of a column name: ``W/m^2/K`` becomes ``W_per_m2_K``."""
-    above, *below = unit.replace("^", "").replace("**", "").replace("*", " ").split("/")
-    name = "".join(above.split())
-    return f"{name}_per_{'_'.join('_'.join(below).split())}" if below else name

@@ -23,6 +23,7 @@ from ..pictures.panels import (
     panels,
     plot_along,
 )
+from ..variants.numbers import MAIN
 from .layout import (
     LINES,
     Layout,
@@ -40,14 +41,7 @@ _MOST_MAPS, _ACROSS, _LEVELS = 12, 4, 12
 _MARKED = 25
 _LISTED = 24  # entries of a legend
 _PLACE = from_key("x_m", "position of the largest pressure, x", "mm")
-_KEYS = (
-    *("max_pressure_Pa", _PLACE.header, "max_temperature_K", "peak_temperature_K"),
-    *("heat_carried_out_W", "shape_range_m", "rigid_wear_velocity_m_per_s", "friction_power_W"),
-    *("wear_volume_1_m3", "wear_volume_2_m3", "contact_area_m2", "guide_force_N", "approach_m"),
-    *("critical_speed_m_per_s", "critical_speed_with_wear_m_per_s"),
-    *("critical_angular_velocity_rad_per_s", "critical_angular_velocity_with_wear_rad_per_s"),
-    *("growth_rate_per_s", "dissipated_energy_J"),
-)
+_KEYS = ("max_pressure_Pa", _PLACE.header, *MAIN)
 _NUMBERS = {key: _PLACE if key == _PLACE.header else of_key(key) for key in _KEYS}
 """Quantities that are drawn, by their columns."""
 

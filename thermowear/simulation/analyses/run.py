@@ -1,10 +1,9 @@
-"""Run of an analysis, or of a series of them: set-up, analysis, checks, error estimate, result."""
+"""Run of an analysis: set-up, analysis, checks, error estimate, result."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 from mpi4py import MPI
 
@@ -30,7 +29,6 @@ from ..geometry_update.wider_zone import reaches_open_end
 from ..results.recording import Snapshot, sample
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
-from ..system.setup_cache import SetupCache, inputs
 from ..system.system import System
 from .checks import (
     deep_wear,
@@ -234,61 +232,3 @@ _STEPPED: dict[type, Callable[..., AnalysisHistory]] = {
     FrettingAnalysis: FrettingHistory,
     ReciprocatingAnalysis: ReciprocatingHistory,
 }
-
-
-class Series:
-    """Sequence of models with a shared set-up cache; see `groups`.
-
-    Parameters
-    ----------
-    comm : mpi4py.MPI.Comm, optional
-        All ranks by default.
-    """
-
-    def __init__(self, comm=None):
-        self.comm = MPI.COMM_WORLD if comm is None else comm
-        self._parts = SetupCache()
-
-    def run(
-        self,
-        model: Model,
-        analysis: Analysis,
-        observer: Observer | None = None,
-        phases: Phases | None = None,
-    ) -> Result:
-        """Compute the next model, as `run` does, without the fields in the bodies.
-
-        Every rank calls.
-
-        Raises
-        ------
-        CaseError, ComputationError
-        """
-        observer = observer or Observer()
-        single = needs_single_solution(model, analysis)
-        phases = phases or Phases(observer.phase)
-        system = prepare(model, self.comm, phases, self._parts, single)
-        return balanced(analyse(system, analysis, observer)[1])
-
-
-def groups(models: Sequence[Model]) -> list[list[int]]:
-    """Group numbers of models by equal elastic bodies, ordered within by equal thermal set-up.
-
-    Groups share no costly set-up results, and may be computed in parallel.
-    """
-    shared: list[tuple[Any, list[tuple[Any, list[int]]]]] = []
-    for number, model in enumerate(models):
-        made_from = inputs(model)
-        bodies = None if model.discretisation.positioning else made_from.elasticity
-        heated = _of(shared, bodies, bodies is None)
-        _of(heated, made_from.conduction).append(number)
-    return [[number for _, numbers in heated for number in numbers] for _, heated in shared]
-
-
-def _of(table: list[tuple[Any, list]], key: Any, new: bool = False) -> list:
-    """List of a key, which need not be hashable; created if missing or requested new."""
-    for known, found in () if new else table:
-        if known == key:
-            return found
-    table.append((key, []))
-    return table[-1][1]

@@ -19,7 +19,7 @@ from ...contact.wear.track import StrokeGrids
 from ...errors import CaseError
 from ...model.analyses import ReciprocatingAnalysis
 from ...model.interface import Interface
-from ..system.contact_points import contact_points
+from ..points.contact_points import contact_points
 from ..system.rigid_modes import load_direction, rigid_modes
 from ..system.setup_cache import SetupCache
 from ..system.system import System

@@ -17,10 +17,10 @@ from ...parallel import on_root
 from ...serialise import serialisable
 from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.sdirk import InterfaceState, advance_with_error
+from ..points.worn_geometry import WornContact, WornGeometry, along
 from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
-from ..system.worn_geometry import WornContact, WornGeometry, along
 from .carrying import (
     carried_growth,
     carried_rise,

@@ -30,9 +30,9 @@ from ...model.tie import Tie
 from ...parallel import on_root
 from ..interface.interface_problem import InterfaceProblem
 from ..interface.sdirk import InterfaceState
+from ..points.worn_geometry import WornContact, WornGeometry, along
 from ..results.recording import snapshot_at
 from ..system.system import System
-from ..system.worn_geometry import WornContact, WornGeometry, along
 
 STEPPED = (
     "wear: both faces wear in place, and materials side by side share it in different ratios; no "

@@ -15,8 +15,8 @@ from ...geometry.mesh.mixed import AnyMesh, block_of, exchanged
 from ...geometry.mesh.tagged import quality
 from ...geometry.moving.moved import nodes_at
 from ...geometry.moving.remeshed_solid import meshed_inside
+from ..points.worn_geometry import WornContact, WornGeometry
 from ..system.system import System
-from ..system.worn_geometry import WornContact, WornGeometry
 from .moving_faces import FaceKey, MovingFaces
 from .remesh import exchanged_side, improved
 

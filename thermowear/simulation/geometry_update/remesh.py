@@ -21,8 +21,8 @@ from ...geometry.mesh.tagged import TaggedMesh, quality
 from ...geometry.moving.moved import nodes_at
 from ...geometry.moving.new_face import NewFace
 from ...geometry.moving.remeshed import meshed_anew
+from ..points.worn_geometry import WornContact, WornGeometry, along
 from ..system.system import System
-from ..system.worn_geometry import WornContact, WornGeometry, along
 from .moving_faces import FaceKey, MovingFaces, parts_behind
 
 New = TypeVar("New")

@@ -16,9 +16,9 @@ from ...model.model import Zone
 from ...serialise import serialisable
 from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.sdirk import InterfaceState
+from ..points.worn_geometry import WornGeometry
 from ..system.building import build
 from ..system.system import System
-from ..system.worn_geometry import WornGeometry
 
 _WIDER = 1.6
 """Width of the next zone relative to the contact, at the same number of elements."""

@@ -8,7 +8,7 @@ import scipy.sparse as sp
 from ...bulk.points.point_values import point_rows
 from ...parallel import sum_over_ranks
 from ...results import ProbeRow
-from ..system.probe_points import probe_points
+from ..points.probe_points import probe_points
 from ..system.system import System
 
 

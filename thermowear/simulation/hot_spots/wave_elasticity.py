@@ -15,7 +15,7 @@ from ...contact.operators.traces import vector_trace
 from ...contact.search.pairing import Pairing
 from ...contact.ties.joints import elastic_joints
 from ...parallel import sum_over_ranks
-from ..system.building import elastic_materials, glued_pairings
+from ..system.cached_bodies import elastic_materials, glued_pairings
 from ..system.system import System
 from .supports import FreeMotions, Guided, Symmetry, antisymmetric, pinning
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
 
 from ...bulk.bodies import Bodies, distribute
 from ...bulk.kinematics import Kinematics, kinematics_of
-from ...bulk.mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
-from ...bulk.solver_choice import SolverChoice, choose_solver
+from ...bulk.solver_choice import choose_solver
 from ...contact.faces.face import gather_faces
 from ...contact.faces.part_values import PartValues
 from ...contact.operators.pressure import Basis, joined_bases
@@ -23,30 +20,32 @@ from ...contact.operators.rigid_motion import (
     joined_sliding,
     sliding,
 )
-from ...contact.operators.traces import gap_trace
 from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import Pairing
-from ...contact.ties.joints import elastic_joints, glued_points
 from ...geometry.mesh.held import check_held, free_motions
 from ...geometry.mesh.mixed import AnyMesh
 from ...model.interface import Interface
 from ...model.model import Model, Zone
 from ...parallel import on_root
 from ...timer import Phases
-from .contact_points import (
+from ..points.contact_points import (
     contact_points,
     groups_of_parts,
     require_laws,
     softness_of_parts,
     worn_contact_points,
 )
-from .face_regions import divided_faces, require_regions
-from .probe_points import probe_points
+from ..points.face_regions import divided_faces, require_regions
+from ..points.probe_points import probe_points
+from ..points.worn_geometry import WornGeometry
+from .cached_bodies import CachedBodies
 from .rigid_modes import dead_load, dead_resultant, load_direction, rigid_modes
 from .setup_cache import SetupCache, inputs
 from .system import System
-from .thermal_system import coupled_without_condensation, heat_partition, thermal_system
-from .worn_geometry import WornGeometry
+from .thermal_system import (
+    coupled_without_condensation,
+    heat_partition,
+)
 
 
 def build(
@@ -96,13 +95,8 @@ def build(
     coupled = coupled_without_condensation(choice, len(contacts.weights))
     made_from = made_from.solved_by(choice.name, coupled)
     with phases("assemble elasticity"):
-        to_glue = model, comm, kinematics, bodies
-        glued = parts.get("glued", made_from.mesh, lambda: glued_pairings(*to_glue))
-        elastic, trace = parts.get(
-            "elasticity",
-            made_from.elasticity,
-            lambda: elastic_system(model, kinematics, bodies, contacts, choice, glued),
-        )
+        bodies_of = CachedBodies(parts, made_from, model, choice, phases)
+        elastic, trace, glued = bodies_of.elastic(kinematics, bodies, contacts)
     dead = dead_load(model, contacts, elastic, trace)
     driven = rigid_modes(
         model.holders, contacts, lambda motion: dead_resultant(elastic, model.bodies, dead, motion)
@@ -110,12 +104,7 @@ def build(
     thermal, heat = None, model.heat
     if heat is not None:
         partition = heat_partition(model, bodies, contacts)
-        at = contacts, glued, elastic, basis, partition
-        thermal = parts.get(
-            "conduction",
-            made_from.conduction,
-            lambda: thermal_system(model, heat, *at, phases, choice),
-        )
+        thermal = bodies_of.conducting(heat, contacts, glued, elastic, basis, partition)
         thermal = replace(thermal, face=replace(thermal.face, partition=partition))
     return System(
         model=model,
@@ -205,57 +194,6 @@ def _paired_faces(
         return contact_points(model, interface, comm, kinematics, *faces)
     moved = worn.contacts[index], worn.relative_motion(interface.bodies)
     return worn_contact_points(model, interface, kinematics, *moved, *faces)
-
-
-def glued_pairings(model: Model, comm, kinematics: Kinematics, bodies: Bodies) -> list[Pairing]:
-    """Opposite points of the glued faces."""
-    degree = model.discretisation.degree
-    return [
-        glued_points(*gather_faces(bodies, tie.faces), kinematics, degree, comm)
-        for tie in model.ties
-    ]
-
-
-def elastic_system(
-    model: Model,
-    kinematics: Kinematics,
-    bodies: Bodies,
-    contacts: Contacts,
-    choice: SolverChoice,
-    glued: Sequence[Pairing] = (),
-) -> tuple[Elasticity, sp.csr_matrix]:
-    """Assemble the elastic bodies and set up their solver. Every rank calls.
-
-    Returns
-    -------
-    elastic : Elasticity
-    trace : csr_matrix, shape (n_owned, n)
-        Bᵀ of the gap in the displacement spaces.
-    """
-    degree = model.discretisation.degree
-    clamped, symmetric, rollers, mid_plane = model.supports
-    elastic = elasticity(
-        bodies,
-        kinematics,
-        degree,
-        elastic_materials(model),
-        clamped,
-        symmetric,
-        rollers,
-        choice,
-        mid_plane,
-        joints=lambda spaces: elastic_joints(spaces, glued),
-    )
-    return elastic, gap_trace(elastic.spaces, contacts)
-
-
-def elastic_materials(model: Model) -> dict[str, ElasticMaterial]:
-    """Elastic materials by part; none expands in a model without heat."""
-    hot = model.heat is not None
-    return {
-        part: ElasticMaterial(m.young_modulus, m.poisson_ratio, m.expansion if hot else 0.0)
-        for part, m in model.materials.items()
-    }
 
 
 def sliding_contact(

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from ...model.model import Model, Zone
-from .contact_points import groups_of_parts, softness_of_parts
-from .face_regions import regions_of
+from ..points.contact_points import groups_of_parts, softness_of_parts
+from ..points.face_regions import regions_of
 
 Part = TypeVar("Part")
 
@@ -42,15 +42,21 @@ class CacheKeys:
         Inputs of the meshed bodies.
     points : tuple
         Inputs of the contact points.
+    stiffness : tuple
+        Inputs of the factorised elastic bodies, which do not depend on thermal expansion.
     elasticity : tuple
-        Inputs of the factorised and the condensed elastic bodies.
+        Inputs of the condensed elastic bodies with their expansion.
+    conductivity : tuple
+        Inputs of the factorised conduction and its condensation.
     conduction : tuple
-        Inputs of the factorised conduction, its condensation and the distortion.
+        Inputs of the distortion by the temperatures of the conduction.
     """
 
     mesh: tuple
     points: tuple
+    stiffness: tuple
     elasticity: tuple
+    conductivity: tuple
     conduction: tuple
 
     def solved_by(self, solver: str, coupled: bool) -> CacheKeys:
@@ -62,7 +68,9 @@ class CacheKeys:
         exchange = ("coupled",) if coupled else ()
         return replace(
             self,
+            stiffness=(*self.stiffness, *own),
             elasticity=(*self.elasticity, *own),
+            conductivity=(*self.conductivity, *own, *exchange),
             conduction=(*self.conduction, *own, *exchange),
         )
 
@@ -88,10 +96,11 @@ def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
     ]
     points = (mesh, faces)
     strained = {part: (m.young_modulus, m.poisson_ratio) for part, m in materials.items()}
+    stiffness = strained, points
     if heat is None:
-        return CacheKeys(mesh, points, (points, strained), ())
+        return CacheKeys(mesh, points, stiffness, stiffness, (), ())
     expanding = {part: (m.expansion, m.expansion_factor) for part, m in materials.items()}
-    elasticity = (points, strained, expanding)
+    elasticity = expanding, *stiffness
     conducting = {
         part: (m.conductivity, m.conductivity_factor, m.density, m.specific_heat)
         for part, m in materials.items()
@@ -99,4 +108,6 @@ def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
     motions = [interface.motion for interface in interfaces]
     carried = motions if heat.advection == "resolved" else None
     joints = [tie.conductance for tie in model.ties]
-    return CacheKeys(mesh, points, elasticity, (elasticity, conducting, heat, carried, joints))
+    tables = {part: factor for part, (_, factor) in expanding.items() if factor is not None}
+    conductivity = conducting, heat, carried, joints, tables, *stiffness
+    return CacheKeys(mesh, points, stiffness, elasticity, conductivity, (expanding, *conductivity))

@@ -35,12 +35,12 @@ from ...model.body import Facing
 from ...model.model import Model, Zone
 from ...parallel import sum_over_ranks
 from ...timer import Phases
-from .contact_points import facing_parts
+from ..points.contact_points import facing_parts
+from ..points.worn_geometry import WornGeometry
 from .joint_wear import JointWear
 from .rigid_modes import approaches, dead_resultant, load_directions
 from .setup_cache import CacheKeys, SetupCache
 from .thermal_system import ThermalSystem
-from .worn_geometry import WornGeometry
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from ...bulk.heat.varying import (
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.mechanics.thermal_forces import ThermalForces
 from ...bulk.solver_choice import SolverChoice
-from ...bulk.spaces import lagrange_spaces
+from ...bulk.spaces import Spaces
 from ...contact.operators.condensation import bath_matrix, condense_heat
 from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.operators.face_nodes import FaceNodes
@@ -35,7 +35,7 @@ from ...errors import CaseError
 from ...model.conditions import Heat, Motion
 from ...model.model import Model
 from ...timer import Phases
-from .contact_points import facing_parts
+from ..points.contact_points import facing_parts
 from .thermal_loads import ThermalLoads, temperature_at, thermal_loads
 
 _MOST_CONDENSED = 4000
@@ -90,6 +90,15 @@ class ThermalSystem:
         assert isinstance(self.face, InterfaceHeat)
         return self.conduction, self.face.nodes
 
+    def straining(self, elastic: Elasticity, load: ThermalForces) -> ThermalSystem:
+        """Same conduction, with forces on elastic bodies of another expansion. Every rank calls."""
+        spaces = self.conduction.spaces
+        expansions = tuple(
+            replace(one, matrix=elastic.thermal_load(spaces, only=one.part))
+            for one in self.expansions
+        )
+        return replace(self, load=load, expansions=expansions)
+
     def forces(self, rise: np.ndarray) -> np.ndarray:
         """Nodal forces of a temperature rise, owned rows [N]."""
         return thermal_forces(self.load, self.expansions, rise)
@@ -101,6 +110,7 @@ def thermal_system(
     contacts: Contacts,
     glued: Sequence[Pairing],
     elastic: Elasticity,
+    spaces: Spaces,
     basis: Basis,
     partition: np.ndarray,
     phases: Phases,
@@ -109,7 +119,6 @@ def thermal_system(
     """Assemble conduction, and condense it if need be. Every rank calls."""
     bodies, kinematics = elastic.bodies, elastic.kinematics
     with phases("assemble conduction"):
-        spaces = lagrange_spaces(bodies, model.discretisation.degree)
         traces = face_traces(spaces, contacts)
         materials = conducting_parts(model)
         shifts = _shifts(model, heat, contacts, materials)

@@ -1,0 +1,132 @@
+"""Command `calibrate`: files, pictures, exit codes."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import matplotlib.image as mpimg
+import numpy as np
+import pytest
+import tomli_w
+
+import thermowear as tw
+from thermowear.app.cli import main
+
+from .rings import FRICTION, WEAR, K, tables, truth, volumes
+
+pytestmark = pytest.mark.usefixtures("in_folder")
+
+
+def write_case(**calibrate):
+    """Case file in the current folder."""
+    Path("ring.toml").write_text(tomli_w.dumps(tables(**calibrate)), encoding="utf-8")
+    return "ring.toml"
+
+
+def test_files_of_a_calibration(capsys):
+    """requirement: record, observations, calibrated case, pictures and report."""
+    volumes(Path("scar.csv"), truth(), 0.02)
+    case = write_case(parameters={"k": WEAR}, observations={"scar": {}})
+    assert main(["calibrate", case, "--data", "scar.csv", "-o", "c"]) == 0
+    printed = capsys.readouterr().out
+    assert "k " in printed
+    assert "5 observations" in printed
+    names = {path.name for path in Path("c").iterdir()}
+    assert names == {
+        *("calibration.json", "observations.csv", "case.calibrated.toml", "case.resolved.toml"),
+        *("run.json", "fit.png", "residuals.png", "parameters.png", "report.html"),
+    }
+    record = json.loads(Path("c/calibration.json").read_text())
+    own = record["parameters"]["k"]
+    assert own["unit"] == "1/MPa"
+    assert own["interval"][0] < K < own["interval"][1]
+    assert own["value"] == pytest.approx(np.exp(own["internal"]))
+    assert record["covariance"][0][0] == pytest.approx(own["standard_error"] ** 2)
+    calibrated = tw.load("c/case.calibrated.toml")
+    assert calibrated.calibrate is None
+    found = calibrated.wear["punch"].coefficient_si()
+    assert found == pytest.approx(1e-6 * own["value"], rel=1e-12)
+    with Path("c/observations.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [float(row["time_s"]) for row in rows] == [5.0, 12.0, 20.0, 33.0, 50.0]
+    for row in rows:
+        assert row["quantity"] == "wear_volume_1_m3"
+        low, middle, high = (float(row[name]) for name in ("lower", "predicted", "upper"))
+        assert low < middle < high
+    assert json.loads(Path("c/run.json").read_text())["status"] == "done"
+    page = Path("c/report.html").read_text()
+    assert "Correlation of the parameters" in page
+    assert "data:image/png" in page
+
+
+def test_pictures_again_and_never_over_others(capsys):
+    """requirement: `plot` and `report` work on the folder; nothing is overwritten unasked."""
+    volumes(Path("scar.csv"), truth(), 0.02)
+    case = write_case(parameters={"k": WEAR, "mu": FRICTION})
+    words = ["calibrate", case, "--data", "scar=scar.csv", "-o", "c", "--no-pictures"]
+    assert main(words) == 0
+    said = capsys.readouterr().out
+    assert "k · mu^1.00" in said
+    assert not Path("c/fit.png").exists()
+    assert main(words) == 1
+    assert "--overwrite" in capsys.readouterr().err
+    Path("c/own.txt").write_text("mine")
+    assert main([*words, "--overwrite"]) == 0
+    assert Path("c/own.txt").read_text() == "mine"
+    assert main(["plot", "c"]) == 0
+    assert "determine none of them" in capsys.readouterr().err
+    assert mpimg.imread("c/fit.png")[..., :3].std() > 0.01
+    assert main(["report", "c"]) == 0
+    assert "not determined" not in Path("c/report.html").read_text().partition("</h1>")[0]
+    Path("d").mkdir()
+    Path("d/fit.png").write_text("a picture")
+    assert main(["calibrate", case, "--data", "scar.csv", "-o", "d", "--overwrite"]) == 1
+    assert "not a folder of a calibration" in capsys.readouterr().err
+
+
+def test_plan(capsys):
+    """requirement: `--plan` prints the errors to be expected, of each measurement alone, too."""
+    volumes(Path("scar.csv"), truth())
+    torque = "time [s], friction_torque_deviation [N m]\n20, 300\n"
+    Path("torque.csv").write_text(torque)
+    case = write_case(parameters={"k": WEAR, "mu": FRICTION})
+    data = ["--data", "scar.csv", "--data", "torque.csv"]
+    assert main(["calibrate", case, *data, "--plan", "-o", "p"]) == 0
+    said = capsys.readouterr().out
+    assert "only scar" in said
+    assert "not determined" in said
+    record = json.loads(Path("p/calibration.json").read_text())
+    assert record["planned"]
+    assert record["standard_errors_alone"]["scar"]["k"] is None
+    assert record["parameters"]["mu"]["standard_error"] > 0.0
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--data", "none.csv"], "cannot be read"),
+        (["--data", "a=scar.csv", "--data", "a=scar.csv"], "a is given twice"),
+        ([], "observations: missing"),
+        (["--set", "calibrate.parameters.k.start='1 1/MPa'", "--data", "scar.csv"], "start"),
+    ],
+)
+def test_wrong_commands(words, said, capsys):
+    """requirement: exit code 1 and one line."""
+    volumes(Path("scar.csv"), truth())
+    case = write_case(parameters={"k": WEAR})
+    assert main(["calibrate", case, *words, "-o", "c", "--no-pictures"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+    assert not Path("c").exists()
+
+
+def test_a_failed_calibration_says_so(capsys):
+    """requirement: exit code 2, and the reason in the record of the run."""
+    volumes(Path("scar.csv"), truth())
+    case = write_case(parameters={"k": WEAR})
+    words = ["calibrate", case, "--data", "scar.csv", "-o", "c", "--set", "analysis.max_steps=2"]
+    assert main(words) == 2
+    assert "first values failed" in capsys.readouterr().err
+    assert json.loads(Path("c/run.json").read_text())["status"] == "failed"

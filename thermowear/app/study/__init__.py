@@ -1,0 +1,1 @@
+"""Studies: propagation of uncertain inputs of a case, and the sensitivity of its results."""

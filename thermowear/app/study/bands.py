@@ -1,0 +1,119 @@
+"""Bands of curves: quantiles over the variants on common times, and at common contact points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ...results.points import InterfaceFields
+from ...results.quantity import table_of
+from ...results.rows import HistoryRow
+from .curves import HISTORY, PLACES, POINTS, Curves
+
+LEVELS = {"2.5": 0.025, "50": 0.5, "97.5": 0.975}
+"""Quantiles of bands by their names in columns."""
+_TIMES = 200
+_SAME = 1e-5
+"""Distance of points that are the same, relative to the size of the contact."""
+Columns = dict[str, np.ndarray]
+
+
+@dataclass(frozen=True)
+class Bands:
+    """Bands of curves.
+
+    Attributes
+    ----------
+    tables : dict of str to dict of str to ndarray
+        Columns by header (``max_pressure_Pa_97.5``), by the stem of the table.
+    notes : tuple of str
+        Reasons for what is missing, or deviates.
+    """
+
+    tables: dict[str, Columns] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+def bands(curves: Sequence[Curves]) -> Bands:
+    """Bands of the curves of all variants that have them."""
+    tables: dict[str, Columns] = {}
+    notes: list[str] = []
+    for stem in dict.fromkeys(stem for own in curves for stem in own):
+        found = [own[stem] for own in curves if stem in own]
+        if len(found) < 2:
+            continue
+        columns, note = _over_time(found) if stem == "history" else _at_points(found)
+        if columns:
+            tables[stem] = columns
+        notes += [f"bands_{stem}.csv: {note}"] if note else []
+    return Bands(tables, tuple(notes))
+
+
+def _over_time(found: Sequence[Columns]) -> tuple[Columns, str]:
+    """Bands of histories up to the earliest end, at times where the steps are dense."""
+    ends = np.array([own["time"][-1] for own in found], dtype=float)
+    end = ends.min()
+    steps = np.concatenate([own["time"] for own in found]).astype(float)
+    steps = np.sort(steps[steps <= end])
+    if all(np.array_equal(own["time"], found[0]["time"]) for own in found):
+        times = found[0]["time"].astype(float)
+    else:
+        times = np.unique(np.quantile(steps, np.linspace(0, 1, _TIMES)))
+    curves = {
+        name: np.array([np.interp(times, own["time"], own[name]) for own in found], np.float32)
+        for name in HISTORY
+        if all(name in own for own in found)
+    }
+    note = f"up to {end:.6g} s, the end of the shortest run" if np.ptp(ends) > 1e-6 * end else ""
+    named = table_of(HistoryRow).columns
+    columns = {named["time"].header: times}
+    return columns | _quantiles({named[name].header: c for name, c in curves.items()}), note
+
+
+def _at_points(found: Sequence[Columns]) -> tuple[Columns, str]:
+    """Bands at the contact points of all variants, or at those of the first one."""
+    first, note = found[0], ""
+    places = [name for name in PLACES if name in first]
+    size = max(float(np.ptp(first[name])) for name in places)
+    names = [name for name in POINTS if all(name in own for own in found)]
+    if all(_coincide(own, first, places, _SAME * size) for own in found):
+        curves = {name: np.array([own[name] for own in found]) for name in names}
+    else:
+        if not all(np.all(np.diff(own["x"]) > 0) for own in found):
+            return {}, "left out, as the contact points differ between the variants"
+        curves = {
+            name: np.array([_interpolated(first["x"], own, name) for own in found], np.float32)
+            for name in names
+        }
+        note = "interpolated on x, as the contact points differ between the variants"
+    named = table_of(InterfaceFields).columns
+    columns = {named[name].header: first[name].astype(float) for name in places}
+    return columns | _quantiles({named[name].header: c for name, c in curves.items()}), note
+
+
+def _coincide(own: Columns, first: Columns, places: Sequence[str], near: float) -> bool:
+    return all(
+        name in own
+        and len(own[name]) == len(first[name])
+        and np.abs(own[name] - first[name]).max() <= near
+        for name in places
+    )
+
+
+def _interpolated(x: np.ndarray, own: Columns, name: str) -> np.ndarray:
+    """Column at other places; NaN beyond the contact points."""
+    return np.interp(x, own["x"], own[name], np.nan, np.nan)
+
+
+def _quantiles(curves: dict[str, np.ndarray]) -> Columns:
+    """Quantiles of curves (n, m) by header and level."""
+    columns: Columns = {}
+    for header, values in curves.items():
+        if np.isnan(values).any():
+            found = np.nanquantile(values, list(LEVELS.values()), axis=0)
+        else:
+            found = np.quantile(values, list(LEVELS.values()), axis=0)
+        columns |= {f"{header}_{word}": row for word, row in zip(LEVELS, found, strict=True)}
+    return columns

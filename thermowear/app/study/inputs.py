@@ -1,0 +1,110 @@
+"""Uncertain inputs of a study: keys of the case with distributions, and calibrated parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ...case.studies.scalars import Scalar
+from ...case.studies.study import InputTable
+from ...case.values.units import registry, unit_of
+from ...inference import (
+    LogNormal,
+    LogUniform,
+    Normal,
+    Triangular,
+    TruncatedNormal,
+    UncertainInput,
+    Uniform,
+)
+from ...output.variants.units import in_header, in_si, value_at
+
+
+@dataclass(frozen=True)
+class InputColumn:
+    """Value of an input.
+
+    Attributes
+    ----------
+    name : str
+        Path of the key, or name of a parameter.
+    unit : str
+        Unit in which values are given; empty for a plain number.
+    header : str
+        Column of tables, with the SI unit.
+    offset, scale : float
+        SI value of 0, and of a difference of 1, in the given unit.
+    """
+
+    name: str
+    unit: str
+    header: str
+    offset: float = 0.0
+    scale: float = 1.0
+
+    def in_si(self, values):
+        """SI values of values in the given unit."""
+        return self.offset + self.scale * values
+
+
+@dataclass(frozen=True)
+class StudyInput:
+    """Input, or a group of inputs that depend on each other.
+
+    Attributes
+    ----------
+    label : str
+    columns : tuple of InputColumn
+    distribution : UncertainInput
+        Distribution of values in the given units.
+    overrides : callable
+        Changes ``KEY=VALUE`` of the case for values of the columns.
+    limits : ndarray or None, shape (2, p)
+        Bounds to which values are moved that lie beyond.
+    """
+
+    label: str
+    columns: tuple[InputColumn, ...]
+    distribution: UncertainInput
+    overrides: Callable[[Sequence[float]], tuple[str, ...]]
+    limits: np.ndarray | None = None
+
+
+def input_column(name: str, unit: str, resolved: Any = None) -> InputColumn:
+    """Column of an input; its SI unit is that of the key in the resolved case, if it has one."""
+    if not unit:
+        return InputColumn(name, "", name)
+    quantity, known = registry().Quantity, in_si(resolved)
+    base = quantity(1.0, unit_of(unit)).to_base_units().units
+    si = base if known is None else unit_of(known[1])
+    zero, one = (float(quantity(v, unit_of(unit)).to(si).magnitude) for v in (0.0, 1.0))
+    spelled = f"{base:~C}" if known is None else known[1]
+    return InputColumn(name, unit, f"{name}_{in_header(spelled)}", zero, one - zero)
+
+
+def inputs_of(tables: dict[str, InputTable], case: dict[str, Any]) -> list[StudyInput]:
+    """Inputs of the table ``study`` of a resolved case."""
+    return [_input(key, table, value_at(key, case)) for key, table in tables.items()]
+
+
+def _input(key: str, table: InputTable, resolved: Any) -> StudyInput:
+    def overrides(values: Sequence[float]) -> tuple[str, ...]:
+        return (Scalar(float(values[0]), table.unit).override(key),)
+
+    column = input_column(key, table.unit, resolved)
+    return StudyInput(key, (column,), distribution_of(table), overrides)
+
+
+def distribution_of(table: InputTable) -> UncertainInput:
+    """Distribution of the values of an input, in the unit that they are written in."""
+    numbers = table.numbers
+    if table.distribution == "normal":
+        cut = numbers.keys() & {"lower", "upper"}
+        return TruncatedNormal(**numbers) if cut else Normal(**numbers)
+    if table.distribution == "lognormal":
+        return LogNormal.from_factor(**numbers)
+    kinds = {"uniform": Uniform, "loguniform": LogUniform, "triangular": Triangular}
+    return kinds[table.distribution](**numbers)

@@ -1,0 +1,101 @@
+"""Folder of a study: the case, one table of all variants, and curves in the journal."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from ..files import write_text
+from ..variants.folder import Cell, VariantsFolder
+
+CASE = "case.resolved.toml"
+_FILES = (
+    *("quantiles.csv", "sobol.csv", "tornado.csv", "bands_*.csv", CASE, "report.html"),
+    *("distributions.png", "tornado.png", "sobol.png", "bands.png"),
+)
+_FLOAT = np.dtype("<f4")
+Curves = dict[str, dict[str, np.ndarray]]
+
+
+class StudyFolder(VariantsFolder):
+    """Writer of the results of one study; see `VariantsFolder`.
+
+    Parameters
+    ----------
+    path : Path
+    headers, cells : sequence
+        Part of the design, and values of the inputs, of each variant.
+    case : dict
+        Case with all default values.
+    about : dict
+        Record of the study for ``run.json``.
+    checksum : str
+    overwrite, resume : bool
+
+    Attributes
+    ----------
+    curves : dict of int to dict
+        Curves of the variants in single precision, by number: columns by table.
+    """
+
+    KIND = "study"
+    MARK = "study"
+    FILES = _FILES
+
+    def __init__(
+        self,
+        path: Path,
+        headers: Sequence[str],
+        cells: Sequence[Sequence[Cell]],
+        case: dict[str, Any],
+        about: dict[str, Any],
+        checksum: str,
+        overwrite: bool = False,
+        resume: bool = False,
+    ):
+        self.curves: dict[int, Curves] = {}
+        super().__init__(path, headers, cells, {"study": about}, checksum, overwrite, resume)
+        write_text(path / CASE, tomli_w.dumps(case))
+
+    def add(
+        self,
+        number: int,
+        status: str,
+        numbers: dict[str, float],
+        curves: Curves,
+        seconds: float,
+    ) -> None:
+        """Record the end of a variant, by its number from 1."""
+        more = {"curves": _packed(curves)} if curves else {}
+        if curves:
+            self.curves[number] = curves
+        self.add_numbers(number, status, numbers, seconds, **more)
+
+    def restored(self, line: dict[str, Any]) -> None:
+        if "curves" in line:
+            self.curves[line["variant"]] = _unpacked(line["curves"])
+
+
+def is_study(folder: Path) -> bool:
+    """Test whether a folder contains a study."""
+    return StudyFolder.is_of_kind(folder)
+
+
+def _packed(curves: Curves) -> dict[str, dict[str, str]]:
+    """Curves as text of base 64, exactly."""
+    return {
+        stem: {name: base64.b64encode(v.astype(_FLOAT)).decode() for name, v in columns.items()}
+        for stem, columns in curves.items()
+    }
+
+
+def _unpacked(packed: dict[str, dict[str, str]]) -> Curves:
+    return {
+        stem: {name: np.frombuffer(base64.b64decode(t), _FLOAT) for name, t in columns.items()}
+        for stem, columns in packed.items()
+    }

@@ -1,0 +1,83 @@
+"""Tables of a study: quantiles, Sobol indices, swings and bands; written and read back."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from ...inference import SampleQuantiles, SobolIndices, Swings
+from ..tables import write_csv
+
+QUANTILES, SOBOL, TORNADO, BANDS = "quantiles.csv", "sobol.csv", "tornado.csv", "bands_"
+SAMPLE = ("sample", "A", "B")
+"""Parts of the design that are an independent sample of all inputs."""
+
+
+def write_quantiles(folder: Path, outputs: Sequence[str], found: SampleQuantiles) -> None:
+    """Write ``quantiles.csv``, one row per number of the summary that varies."""
+    headers = ["output", "mean", "deviation", *(f"{100 * level:g}%" for level in found.levels)]
+    rows = zip(
+        *(outputs, found.mean, found.deviation, *found.values, found.counts, found.failed),
+        strict=True,
+    )
+    write_csv(folder / QUANTILES, [*headers, "count", "failed"], rows)
+
+
+def write_sobol(
+    folder: Path, outputs: Sequence[str], inputs: Sequence[str], found: SobolIndices
+) -> None:
+    """Write ``sobol.csv``, one row per output and input."""
+    headers = ["output", "input", "first_order", "first_order_lower", "first_order_upper"]
+    headers += ["total", "total_lower", "total_upper", "rows", "rows_dropped"]
+    rows = [
+        [
+            *(output, name, found.first[i, k], *found.first_interval[:, i, k]),
+            *(found.total[i, k], *found.total_interval[:, i, k], found.rows[k], found.dropped[k]),
+        ]
+        for k, output in enumerate(outputs)
+        for i, name in enumerate(inputs)
+    ]
+    write_csv(folder / SOBOL, headers, rows)
+
+
+def write_tornado(
+    folder: Path,
+    outputs: Sequence[str],
+    headers: Sequence[str],
+    lows: Sequence[float],
+    highs: Sequence[float],
+    found: Swings,
+) -> None:
+    """Write ``tornado.csv``, one row per output and input, the inputs in SI by their headers."""
+    names = ["output", "input", "input_low", "input_high"]
+    rows = [
+        [output, name, low, high, found.base[k], found.low[i, k], found.high[i, k]]
+        for k, output in enumerate(outputs)
+        for i, (name, low, high) in enumerate(zip(headers, lows, highs, strict=True))
+    ]
+    names += ["output_at_medians", "output_at_low", "output_at_high"]
+    write_csv(folder / TORNADO, names, rows)
+
+
+def write_bands(folder: Path, found: Mapping[str, Mapping[str, np.ndarray]]) -> None:
+    """Write ``bands_history.csv`` and ``bands_interface.csv``, those of contacts by their names."""
+    for stem, columns in found.items():
+        rows = zip(*columns.values(), strict=True)
+        write_csv(folder / f"{BANDS}{stem}.csv", list(columns), rows)
+
+
+def read_cells(path: Path) -> list[dict[str, str]]:
+    """Rows of a table of a study as text; empty if it was not written."""
+    if not path.is_file():
+        return []
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def read_columns(path: Path) -> dict[str, np.ndarray]:
+    """Columns of a table of numbers by header."""
+    rows = read_cells(path)
+    return {name: np.array([float(row[name]) for row in rows]) for name in (rows or [{}])[0]}

@@ -11,6 +11,7 @@ runs. Start, bounds, scaling and data are the same:
 
 import argparse
 import csv
+import os
 import resource
 import subprocess
 import sys
@@ -18,6 +19,8 @@ import tempfile
 import time
 import tomllib
 from pathlib import Path
+
+os.environ["OMP_NUM_THREADS"] = "1"  # as of the commands; before anything loads a BLAS
 
 import numpy as np
 import tomli_w
@@ -56,7 +59,7 @@ def tables(coarse):
         "type": "transient",
         "end_time": f"{END} s",
         "output_times": {"values": times(20).tolist(), "unit": "s"},
-        "tolerance": 1e-5,
+        "tolerance": 1e-4,
     }
     found["mesh"] |= {"degree": 4, "elements": 6} if coarse else {"degree": 6, "elements": 8}
 
@@ -65,7 +68,7 @@ def tables(coarse):
         return f"{value!r} {unit}" if unit else value
 
     found["calibrate"] = {
-        "tolerance": 1e-6,
+        "tolerance": 1e-4,
         "parameters": {
             name: {
                 "key": key,

@@ -20,18 +20,11 @@ from scipy.optimize import least_squares
 
 from ..errors import ComputationError
 from .forward import ForwardModel
-from .jacobian import (
-    NOISE,
-    central_jacobian,
-    forward_jacobian,
-    principal_directions,
-    without_effect,
-)
+from .jacobian import AT_BOUND, NOISE, central_jacobian, distance_to_optimum, forward_jacobian
 from .joint_normal import JointNormal
 from .observations import Observations
 from .parameters import ParameterSpace
 
-_AT_BOUND = 1e-3  # distance to a bound relative to the distance of both
 _LEAST = 1e-12  # smallest scatter, relative to the deviations, for residuals that are zero
 _STALLED = 1e-3  # change of the parameters, relative to the tolerance, that ends the search
 _ROUNDING = 1e-15
@@ -164,14 +157,14 @@ class Fit:
         rows = np.concatenate([self.jacobian, self.space.prior_jacobian])
         priors = self.space.prior_residuals(self.internal)
         residuals = np.concatenate([self.residuals, priors])
-        return _distance(self.space, self.internal, rows, residuals, self.noise)
+        return distance_to_optimum(self.space, self.internal, rows, residuals, self.noise)
 
     @property
     def at_bounds(self) -> tuple[str, ...]:
         """Names of parameters that a bound keeps from fitting better."""
         slope = self.jacobian.T @ self.residuals
         slope += self.space.prior_jacobian.T @ self.space.prior_residuals(self.internal)
-        (lower, upper), near = self.space.bounds, _AT_BOUND * self.space.widths
+        (lower, upper), near = self.space.bounds, AT_BOUND * self.space.widths
         held = (self.internal - lower < near) & (slope > 0)
         held |= (upper - self.internal < near) & (slope < 0)
         return tuple(name for name, at in zip(self.space.names, held, strict=True) if at)
@@ -279,24 +272,7 @@ class _LeastSquares:
         rows = forward_jacobian(self.space, self.model, internal, predicted)
         rows = rows / self.observations.deviations[:, None]
         rows = np.concatenate([rows, self.space.prior_jacobian])
-        residuals = self.residuals(internal)
-        if _distance(self.space, internal, rows, residuals, self.noise) < self.tolerance:
+        at = internal, rows, self.residuals(internal)
+        if distance_to_optimum(self.space, *at, self.noise) < self.tolerance:
             raise _NearOptimum(internal.copy())
         return rows
-
-
-def _distance(
-    space: ParameterSpace,
-    internal: np.ndarray,
-    rows: np.ndarray,
-    residuals: np.ndarray,
-    noise: float,
-) -> float:
-    """Length of the Gauss-Newton step within the bounds, in standard errors."""
-    (lower, upper), slope = space.bounds, rows.T @ residuals
-    to_bound = np.where(slope > 0, internal - lower, upper - internal)
-    held = (to_bound < _AT_BOUND * space.widths) & (slope != 0)
-    singular_values, directions = principal_directions(rows[:, ~held])
-    seen = ~without_effect(singular_values, noise)
-    inside = directions[:, seen].T @ slope[~held] / singular_values[seen]
-    return float(np.hypot(np.linalg.norm(rows[:, held] @ to_bound[held]), np.linalg.norm(inside)))

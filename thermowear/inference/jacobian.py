@@ -10,6 +10,8 @@ from .parameters import ParameterSpace
 
 NOISE = 1e-5
 """Noise of derivatives relative to the largest ones, by which they count as zero."""
+AT_BOUND = 1e-3
+"""Distance to a bound, relative to the distance of both, up to which a parameter is held by it."""
 _ROOM = 0.25  # largest step relative to the distance of the bounds
 
 
@@ -76,6 +78,35 @@ def principal_directions(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def without_effect(singular_values: np.ndarray, noise: float = NOISE) -> np.ndarray:
     """True for singular values within the noise of the derivatives, shape (p,)."""
     return singular_values <= noise * singular_values.max(initial=0.0)
+
+
+def distance_to_optimum(
+    space: ParameterSpace,
+    internal: np.ndarray,
+    rows: np.ndarray,
+    residuals: np.ndarray,
+    noise: float,
+) -> float:
+    """Length of the Gauss-Newton step within the bounds, in standard errors.
+
+    Parameters
+    ----------
+    internal : ndarray, shape (p,)
+        Internal coordinates of a point within the bounds.
+    rows : ndarray, shape (n, p)
+        Weighted Jacobian there, of observations and priors.
+    residuals : ndarray, shape (n,)
+        Weighted residuals there.
+    noise : float
+        Relative noise of the derivatives.
+    """
+    (lower, upper), slope = space.bounds, rows.T @ residuals
+    to_bound = np.where(slope > 0, internal - lower, upper - internal)
+    held = (to_bound < AT_BOUND * space.widths) & (slope != 0)
+    singular_values, directions = principal_directions(rows[:, ~held])
+    seen = ~without_effect(singular_values, noise)
+    inside = directions[:, seen].T @ slope[~held] / singular_values[seen]
+    return float(np.hypot(np.linalg.norm(rows[:, held] @ to_bound[held]), np.linalg.norm(inside)))
 
 
 def _steps(space: ParameterSpace, step: float) -> np.ndarray:

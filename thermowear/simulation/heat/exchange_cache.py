@@ -17,8 +17,11 @@ from ..system.system import System
 
 _FEW = 1500
 """Number of nodes of both faces up to which each exchange is factorised."""
+_SMALL = 500
+"""Number of nodes of both faces up to which several exchanges are kept, also for later cases."""
 _KEPT = 4
-"""Number of exchanges kept of large faces: those of the stages of a step and its halves."""
+"""Number of exchanges kept of small and of large faces: those of the stages of a step and its
+halves."""
 
 
 @dataclass
@@ -81,12 +84,41 @@ class ExchangeCache:
     def _made(self, conductance: np.ndarray) -> KnownExchange:
         """Factorised exchange; a reference for others if the faces are large."""
         self._reference = None
-        self._known.clear()  # frees its memory
-        face = self._face
-        if not isinstance(face, InterfaceHeat) or sum(n.count for n in face.nodes) <= _FEW:
+        face, few = self._face, is_small(self._face)
+        if not few:
+            self._known.clear()  # frees its memory
+        if few or not isinstance(face, InterfaceHeat) or face_nodes(face) <= _FEW:
             return KnownExchange(face.exchange(conductance))
         self._reference = KnownExchange(ReferenceExchange(face, conductance))
         return self._reference
+
+
+def exchange_cache(system: System, conduction: Conduction, face: AnyFace) -> ExchangeCache:
+    """Exchanges of the faces; steady, linear ones of small faces are shared with later cases.
+
+    Parameters
+    ----------
+    system : System
+    conduction : Conduction
+        Steady, or of a time step or a tangent.
+    face : InterfaceHeat or CoupledHeat
+    """
+    thermal = system.thermal
+    steady = thermal is not None and conduction is thermal.conduction and not thermal.varies
+    if not (steady and is_small(face)):
+        return ExchangeCache(face)
+    key = system.inputs.conduction, np.asarray(face.partition).tobytes()
+    return system.parts.get("exchanges", key, lambda: ExchangeCache(face))
+
+
+def is_small(face: AnyFace) -> bool:
+    """Test for condensed faces of few nodes."""
+    return isinstance(face, InterfaceHeat) and face_nodes(face) <= _SMALL
+
+
+def face_nodes(face: InterfaceHeat) -> int:
+    """Number of nodes of both faces."""
+    return sum(nodes.count for nodes in face.nodes)
 
 
 def thermal_distortion(

@@ -23,7 +23,7 @@ from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from ..system.thermal_loads import ThermalLoad
 from ..system.thermal_system import ThermalSystem
-from .exchange_cache import ExchangeCache, KnownExchange, thermal_distortion
+from .exchange_cache import ExchangeCache, KnownExchange, exchange_cache, thermal_distortion
 from .heat_by_body import into_bodies
 
 ROUNDING = 1e-3
@@ -115,7 +115,7 @@ class HeatOperators:
         if isinstance(self.face, InterfaceHeat):
             with self._system.phases("condense conduction"):
                 _ = self.face.response
-        return ExchangeCache(self.face)
+        return exchange_cache(self._system, self.conduction, self.face)
 
     @cached_property
     def slopes(self) -> list[np.ndarray]:

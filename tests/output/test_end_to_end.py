@@ -76,6 +76,7 @@ QUICK = {
     "cylinder-fretting": ("mesh.degree=2", "wear.cycles=20", 'analysis.output_times=["1 s"]'),
 }
 HEADS = {
+    "probes": "time_s,probe,temperature_K",
     "interface": "x_m,y_m,z_m,s_m,weight_m2,pressure_Pa,gap_m,shape_m,wear_1_m,wear_2_m,"
     "wear_rate_1_m_per_s,wear_rate_2_m_per_s,temperature_1_K,temperature_2_K,"
     "heat_flux_1_W_per_m2,heat_flux_2_W_per_m2",
@@ -152,6 +153,7 @@ def test_a_starter_leaves_its_files(finished):
         more = {"history.csv", *(f"interface_{time:g}.csv" for time in analysis.output_times)}
         more |= {"checkpoint.npz"}
         more |= {"heat.csv"} if heat is not None and heat.transient else set()
+        more |= {"probes.csv"} if case.probes else set()
     if analysis.type == "stability":
         more = {"mode.csv"}
         more |= {"hot_spots.csv", "growth.csv", "hot_spots.vtu"} if analysis.hot_spots else set()

@@ -426,7 +426,7 @@ def test_files(tmp_path):
     ]  # fmt: skip
     history = csv_tables.read(folder / "history.csv")
     assert [float(row[0]) for row in rows] == history["time"].tolist()
-    assert len(next(csv.reader((folder / "history.csv").open(encoding="utf-8")))) == 10
+    assert len(next(csv.reader((folder / "history.csv").open(encoding="utf-8")))) == 15
     assert (folder / "heat.png").stat().st_size > 20_000
     assert main(["run", str(file), "-o", str(folder), "--overwrite", "--no-pictures", *small]) == 0
     assert not (folder / "heat.png").exists()

@@ -8,6 +8,7 @@ from typing import Any
 from ... import load
 from ...case import as_plain
 from ...errors import ComputationError
+from ...output.console import Terminal
 from ...output.study import (
     StudyFolder,
     draw_study,
@@ -52,6 +53,7 @@ def _run_with(crew: Crew, chosen) -> int:
     cells: list[list[float | str]] = [
         [part, *map(float, row)] for part, row in zip(design.parts, design.si, strict=True)
     ]
+    Terminal(highlight=False).print(f"checking {len(changes)} variants")
     groups = checked_groups(plan.tables, design, every)
     about = _about(plan)
     folder = StudyFolder(

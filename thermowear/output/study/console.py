@@ -18,6 +18,8 @@ _LEAST = 0.02
 def print_study(console: Console, folder: Path) -> None:
     """Print the main outputs of a study, one per line."""
     record = read_study(folder)
+    if not record.outputs:
+        return
     share = "total Sobol index" if record.indices else "share in the squared swings"
     heads = ("output", "median", "95 % interval", f"most influential inputs ({share})")
     table = Table(*heads, box=None, padding=(0, 2, 0, 0))

@@ -38,7 +38,7 @@ def draw_study(folder: Path) -> list[str]:
     """
     record = read_study(folder)
     if not record.outputs:
-        return [f"{folder}: no number of the results varies, so nothing is drawn"]
+        return [f"{folder}: no number varies over the samples computed so far; nothing is drawn"]
     pictures: dict[str, Callable[[StudyRecord, Path], None]] = {
         "distributions": _draw_distributions,
         "tornado": _draw_tornado,

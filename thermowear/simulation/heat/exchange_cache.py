@@ -113,7 +113,7 @@ def exchange_cache(system: System, conduction: Conduction, face: AnyFace) -> Exc
 
 def is_small(face: AnyFace) -> bool:
     """Test for condensed faces of few nodes."""
-    return isinstance(face, InterfaceHeat) and face_nodes(face) <= _SMALL
+    return isinstance(face, InterfaceHeat) and face_nodes(face) <= min(_SMALL, _FEW)
 
 
 def face_nodes(face: InterfaceHeat) -> int:

@@ -24,7 +24,7 @@ from pathlib import Path
 
 import numpy as np
 
-from thermowear.output.sweep.folder import JOURNAL
+from thermowear.output.variants.folder import JOURNAL
 
 CASE = Path(__file__).parents[2] / "demos" / "pivoted_block.toml"
 COARSE = ("--set", "mesh.degree=2", "--set", "mesh.elements=3", "--no-pictures")

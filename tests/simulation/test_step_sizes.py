@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from thermowear.simulation.time.step_sizes import AnySize, FewSizes, ends
+from thermowear.simulation.time.time_loop import AnySize, FewSizes, ends
 
 
 def walk(sizes, times, wanted):

@@ -10,7 +10,7 @@ import thermowear as tw
 from thermowear.reference import annular_punch as reference
 from thermowear.simulation.interface.sdirk import TrialStep
 from thermowear.simulation.time import time_loop as transient
-from thermowear.simulation.time.step_sizes import next_step
+from thermowear.simulation.time.time_loop import next_step
 
 from ..conftest import COLD_RUNNING_IN, HOT, cold_tables, wear_law
 from ..systems import built

@@ -20,14 +20,13 @@ from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState, steady_state
 from ..results.coatings import Face, WearingState, layers, times_since_worn_through
 from ..results.contact_rows import contact_rows
-from ..results.friction import Friction, friction_of
+from ..results.friction import friction_rows
 from ..results.recording import Snapshot, snapshot_at
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from ..time.step_sizes import AnySize, FewSizes
-from ..time.time_loop import Moment, times_to_hit
+from ..time.time_loop import AnySize, FewSizes, Moment, times_to_hit
 from .static import wear_velocity
 
 _MELTED = 5000.0  # K, above the melting point of any solid
@@ -82,6 +81,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         self._coated = layers(system.model).keys()
         self._lost: dict[Face, tuple[float, float]] = {}
         self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
+        self._rubbing: tuple[InterfaceConditions, np.ndarray] | None = None
 
     def restart_data(self) -> tuple:
         """Mean sliding speed [m/s], data of the outer loop and of nonlinear heat, lost layers."""
@@ -187,7 +187,8 @@ class TransientHistory(AnalysisHistory[Moment]):
 
     def _row(self, moment: Moment, slid: float, conditions: InterfaceConditions) -> HistoryRow:
         system, pressure, rows = self.loop.now.system, moment.state.pressure, self.table(HistoryRow)
-        depths, friction = moment.state.by_body(system.laws), self._friction(moment, conditions)
+        depths = moment.state.by_body(system.laws)
+        force, torque, power = self._friction(moment, conditions)
         in_gap = system.worn_areas * (depths - system.moved)
         volumes = in_gap.sum(axis=1) + system.lost.sum(axis=0)
         return HistoryRow(
@@ -203,17 +204,22 @@ class TransientHistory(AnalysisHistory[Moment]):
             error=moment.error,
             max_wear_1=float(depths[0].max()),
             max_wear_2=float(depths[1].max()),
-            friction_power=friction.power,
-            friction_force=friction.force,
-            friction_torque=float("nan") if friction.torque is None else friction.torque,
+            friction_power=float(power),
+            friction_force=float(force),
+            friction_torque=float(torque),
         )
 
-    def _friction(self, moment: Moment, conditions: InterfaceConditions) -> Friction:
-        """Friction of a pair; of several bodies the power of all contacts."""
-        system, count = self.loop.now.system, len(self._system.model.interfaces)
-        each = [friction_of(system, k, conditions, moment.state.pressure) for k in range(count)]
-        power = sum(found.power for found in each)
-        return each[0] if self._is_pair else Friction(float("nan"), None, power)
+    def _friction(self, moment: Moment, conditions: InterfaceConditions) -> np.ndarray:
+        """Friction force, torque and power of a pair; of several bodies the power of all."""
+        if self._rubbing is None or self._rubbing[0] is not conditions:
+            system, count = self.loop.now.system, len(self._system.model.interfaces)
+            rows = np.concatenate(
+                [friction_rows(system, k, conditions) for k in range(count)], axis=1
+            )
+            if not self._is_pair:
+                rows[:2] = np.nan
+            self._rubbing = conditions, rows
+        return self._rubbing[1] @ moment.state.pressure
 
     def _note_lost_layers(self, conditions, moment: Moment, slid: float, row: HistoryRow) -> None:
         """Keep the time and the sliding distance at which a face first lost all its layers."""

@@ -19,8 +19,7 @@ from ..results.recording import Snapshot, snapshot
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.system import System
-from ..time.step_sizes import AnySize
-from ..time.time_loop import Moment, moments
+from ..time.time_loop import AnySize, Moment, moments
 from .reciprocating_problem import ReciprocatingProblem
 from .stroke import positions, strokes
 

@@ -24,8 +24,7 @@ from ..runtime.observer import Observer
 from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
-from ..time.step_sizes import StepSizes
-from ..time.time_loop import Moment, is_over, moments
+from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import settled, updated
 from .moving_faces import STEPPED, MovingFaces, smoothed_wear, steps_grow
 from .thickness import thicknesses

@@ -46,28 +46,33 @@ def friction_of(
     pressure : ndarray, shape (n,)
         Pressure at the points of all interfaces [Pa].
     """
+    own = system.contacts.ranges[index]
+    force, torque, power = map(float, friction_rows(system, index, conditions) @ pressure[own])
+    return Friction(force, None if np.isnan(torque) else torque, power)
+
+
+def friction_rows(system: System, index: int, conditions: InterfaceConditions) -> np.ndarray:
+    """Friction force, torque and power of one interface per pressure at its points, (3, n).
+
+    The torque is NaN without an axis of rotation.
+    """
     own, pairing = system.contacts.ranges[index], system.contacts.each[index]
-    interface, p, w = system.model.interfaces[index], pressure[own], pairing.weights
+    interface = system.model.interfaces[index]
     sliding = not interface.motion.at_rest  # at rest there is no friction
-    stress = sliding * conditions.friction[own] * p
-    return Friction(
-        float(w @ stress),
-        _torque(system.model, interface, pairing, stress),
-        float(w @ (conditions.heating[own] * p)),
-    )
+    force = pairing.weights * (sliding * conditions.friction[own])
+    arms = _arms(system.model, interface, pairing)
+    return np.stack([force, force * arms, pairing.weights * conditions.heating[own]])
 
 
-def _torque(
-    model: Model, interface: Interface, pairing: Pairing, friction: np.ndarray
-) -> float | None:
-    """Friction moment about the axis of rotation of body 1 or 2 [N m]; None without one."""
+def _arms(model: Model, interface: Interface, pairing: Pairing) -> np.ndarray:
+    """Distances from the axis of rotation of body 1 or 2 [m]; NaN without one."""
     motion = interface.motion
     if model.kinematics == "axisymmetric" and motion.velocity is None:
-        return float(pairing.weights @ (friction * pairing.points[:, 0]))
+        return pairing.points[:, 0]
     if motion.axis is not None:
         arms = motion.axis.velocity(pairing.points, 1.0)
     elif motion.center is not None:
         arms = pairing.points[:, :2] - np.array(motion.center)
     else:
-        return None
-    return float(pairing.weights @ (friction * np.linalg.norm(arms, axis=1)))
+        return np.full(len(pairing.points), np.nan)
+    return np.linalg.norm(arms, axis=1)

@@ -6,65 +6,143 @@ Given steps, such as those of an earlier run, are taken again without error cont
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import partial
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator
+from functools import partial, reduce
 
 import numpy as np
 
 from ...errors import ComputationError
 from ...model.analyses import TimedAnalysis
-from ...serialise import serialisable
 from ..interface.sdirk import (
-    InterfaceState,
     TrialStep,
     WearProblem,
     advance_with_error,
     advance_without_error,
 )
-from .step_sizes import AnySize, StepSizes, ends, next_step
+from .given_steps import require_valid, times_to_hit
+from .moment import Moment
 
 _FAR_SMALLER = 1e-3
 """Size ratio of trial steps for detecting jumps: time errors fall at least by its square root."""
 _SMALLEST = 1e-12  # relative to the elapsed time; at the start to 1e-12 s
 
+_HIT = 1e-9
+"""Distance to a target time, relative to the time left, at which a step is taken to end there."""
+_FEW = 5
+"""Largest number of powers of two that make up an interval; bounds the number of small steps."""
 _ROUNDING, _STILL = 1e-9, 20
 """Error and number of successive steps, ever larger ones, in which nothing changes any more."""
 
 
-@serialisable
-@dataclass(frozen=True)
-class Moment:
-    """Accepted state of the running-in with the data to continue the time loop from it.
+class StepSizes(ABC):
+    """Choice of step sizes between two consecutive times that must be hit exactly.
+
+    Parameters
+    ----------
+    largest : float, optional
+        Upper bound, which may change from step to step [s].
 
     Attributes
     ----------
-    time, step : float
-        End and size of the last step [s].
-    state : InterfaceState
-    error : float
-        Error estimate of the step; NaN for a given step.
-    is_output : bool
-        True at an output time.
-    distance : float
-        Distance from the steady state, see `WearProblem`; NaN without one.
-    number : int
-        Number of the step.
-    begin : float
-        Last time that was hit exactly [s].
-    wanted : float
-        Size of the next step proposed by error control [s].
+    rounding : float
+        Largest ratio of a wanted step size to the one chosen.
     """
 
-    time: float
-    step: float
-    state: InterfaceState
-    error: float
-    is_output: bool
-    distance: float
-    number: int
-    begin: float
-    wanted: float
+    rounding = 1.0
+
+    def __init__(self, largest: float = math.inf):
+        self.largest = largest
+
+    @abstractmethod
+    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
+        """Step from a time between begin and end, not larger than the wanted one [s]."""
+
+    def nominal(self, step: float, begin: float, end: float) -> float:
+        """Size of an earlier step between begin and end, without the rounding of its times [s]."""
+        return step
+
+
+class AnySize(StepSizes):
+    """Largest admissible steps that do not leave a tiny last one."""
+
+    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
+        left, wanted = end - time, min(wanted, self.largest)
+        return left if ends(wanted, left) else min(wanted, max(left / 2, 0.1 * wanted))
+
+
+class FewSizes(StepSizes):
+    """Power-of-two multiples of one step size, so that few operators serve all steps.
+
+    Each step begins at a multiple of its size (dyadic grid): the time left to the next target is
+    always a sum of few such steps.
+
+    Parameters
+    ----------
+    times : iterable of float
+        All times that must be hit exactly [s].
+    """
+
+    rounding = 2.0
+
+    def __init__(self, times: Iterable[float]):
+        super().__init__()
+        self._measure = reduce(_common_measure, (t for t in times if t < math.inf), 0.0)
+
+    def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
+        unit, passed = self._unit(end - begin), time - begin
+        wanted = min(wanted, self.largest, end - time)
+        size = unit * 2.0 ** math.floor(math.log2(wanted / unit) + _HIT)
+        while abs(math.remainder(passed, size)) > 1e-3 * size:
+            size /= 2
+        return size
+
+    def nominal(self, step: float, begin: float, end: float) -> float:
+        unit = self._unit(end - begin)
+        size = unit * 2.0 ** round(math.log2(step / unit))
+        return size if abs(size - step) <= _HIT * step else step
+
+    def _unit(self, interval: float) -> float:
+        """Unit of the step sizes: common measure of all times, or the interval if too fine [s]."""
+        measure = self._measure or 1.0
+        if interval == math.inf or round(interval / measure).bit_count() <= _FEW:
+            return measure
+        return interval
+
+
+def ends(step: float, left: float) -> bool:
+    """Test whether a step covers the time left, up to rounding [s]."""
+    return step >= left * (1 - _HIT)
+
+
+def _common_measure(a: float, b: float) -> float:
+    """Greatest common divisor of two real numbers by Euclid's algorithm, up to rounding."""
+    rounding = _HIT * max(a, b)
+    while b > rounding:
+        a, b = b, abs(math.remainder(a, b))
+    return a
+
+
+def next_step(
+    step: float, error: float, tolerance: float, former: tuple[float, float] | None = None
+) -> float:
+    """Step size expected to meet the tolerance; the error is of third order in the step.
+
+    Slower growth of the error from the former step to this one is extrapolated to the next
+    (predictive control, Gustafsson, ACM Trans. Math. Softw. 20 (1994) 496).
+
+    Parameters
+    ----------
+    step, error, tolerance : float
+    former : tuple of float, optional
+        Size and error of the preceding step; no prediction without them.
+    """
+    if error == 0.0:
+        return 5.0 * step
+    factor = 0.9 * (tolerance / error) ** (1 / 3)
+    if former is not None and factor > 1.0:
+        factor *= max(1.0, step / former[0] * (former[1] / error) ** (1 / 3))
+    return step * float(np.clip(factor, 0.2, 5.0))
 
 
 def moments(
@@ -100,7 +178,7 @@ def moments(
         yield last
     times = times_to_hit(settings, problem)
     targets = [time for time in times if time > last.time]
-    _require_valid(settings, times)
+    require_valid(settings, times)
     advanced, still = _repeated if settings.steps else _next, 0
     while not is_over(settings, last):
         if last.number == settings.max_steps and not settings.steps:
@@ -127,24 +205,6 @@ def is_over(settings: TimedAnalysis, last: Moment) -> bool:
         return last.number == len(settings.steps)
     steady = settings.until == "steady" and last.distance <= settings.steady_tolerance
     return steady or last.time >= max((settings.end_time, *settings.output_times))
-
-
-def _require_valid(settings: TimedAnalysis, targets: list[float]) -> None:
-    """Require given steps to increase, to hit the targets [s] in between, and not to pass all."""
-    steps = settings.steps
-    if not steps:
-        return
-    if not np.all(np.diff([0.0, *steps, targets[-1] * (1 + _SMALLEST)]) > 0.0):
-        raise ComputationError(
-            f"{settings.type}: the given ends of time steps must increase from 0 to the end time "
-            "at most"
-        )
-    missed = sorted({time for time in targets if time <= steps[-1]} - set(steps))
-    if missed:
-        raise ComputationError(
-            f"{settings.type}: none of the given time steps ends at {missed[0]:g} s, an output "
-            "time or a kink of a history"
-        )
 
 
 def _repeated(
@@ -237,10 +297,3 @@ def _accept(
         located = rounding * trial.reached if trial.reached < 0.9 * step else 0.0
         step = size(min(max(proposed, located), 0.9 * step))
     raise ComputationError(f"{settings.type}: no step is small enough at {last.time:g} s{trouble}")
-
-
-def times_to_hit(settings: TimedAnalysis, problem: WearProblem) -> list[float]:
-    """Times that must be hit exactly, in increasing order; the last one ends the run [s]."""
-    end = settings.end_time
-    corners = () if end == np.inf else problem.corners(end)
-    return sorted({*settings.output_times, *(t for t in settings.hits if t <= end), *corners, end})

@@ -171,3 +171,11 @@ def test_further_measurements_are_ranked():
     assert first.name == "friction force"
     assert first.change == pytest.approx(1.0, rel=1e-6)
     assert max(other.change for other in others) < 1e-6
+
+
+def test_equal_candidates_keep_their_order():
+    """requirement: the rank of measurements does not hang on the last bit of their changes."""
+    sizes = {"force": 1.0, "torque": 1.0 - 1e-6, "power": 1.0 + 1e-6, "mass": 0.5, "heat": 2.0}
+    candidates = {name: (np.ones(1), np.array([[size, 0.0]])) for name, size in sizes.items()}
+    ranked = [one.name for one in settling(np.array([1.0, -1.0]), candidates)]
+    assert ranked == ["heat", "force", "torque", "power", "mass"]

@@ -18,6 +18,9 @@ from .jacobian import NOISE, principal_directions, without_effect
 from .joint_normal import JointNormal
 from .parameters import ParameterSpace
 
+_EQUAL = 1e-3
+"""Relative difference of changes that derivatives by differences do not tell apart."""
+
 
 @dataclass(frozen=True)
 class Identifiability:
@@ -106,7 +109,7 @@ def settling(
     Returns
     -------
     list of Settling
-        In descending order of the change.
+        In descending order of the change; equal ones, but for rounding, in the given order.
     """
     unit = direction / np.abs(direction).max()
     found = []
@@ -114,7 +117,11 @@ def settling(
         size, change = np.linalg.norm(values), np.linalg.norm(np.asarray(jacobian) @ unit)
         relative = change / size if size else np.inf if change else 0.0
         found.append(Settling(name, float(relative)))
-    return sorted(found, key=lambda candidate: -candidate.change)
+    ranked = sorted(found, key=lambda candidate: -candidate.change)
+    changes = np.array([candidate.change for candidate in ranked])
+    lower = changes[1:] < (1 - _EQUAL) * changes[:-1]
+    rank = dict(zip((one.name for one in ranked), (0, *np.cumsum(lower)), strict=False))
+    return sorted(found, key=lambda candidate: rank[candidate.name])
 
 
 def _normal(found: Identifiability) -> JointNormal:

@@ -9,6 +9,31 @@ from typing import Any
 from .. import __version__
 from ..errors import CaseError
 
+EXAMPLES: dict[str, tuple[str, ...]] = {
+    "run": (
+        "punch.toml",
+        "punch.toml -o results/hot --set 'motion.angular_velocity=\"0.05 rad/s\"'",
+        "punch.toml -o results/hot --resume",
+    ),
+    "sweep": ("punch.toml --over 'load.mean_pressure=20 MPa,50 MPa' --over mesh.degree=4,6,8",),
+    "calibrate": ("punch.toml --data depth=scars.csv", "punch.toml --plan"),
+    "study": ("punch.toml --indices --processes 4", "brake.toml --calibration results/punch"),
+    "cases": ("",),
+    "init": ("annular-punch", "annular-punch -o punch.toml"),
+    "validate": ("punch.toml",),
+    "mesh": ("brake.toml -o brake.vtu", "brake.toml -o brake.png"),
+    "shape": ("punch.toml -o worn.step --body punch",),
+    "verify": ("hertz-sphere lame", "--json"),
+    "plot": ("results/punch",),
+    "animate": ("results/punch -o punch.mp4 --fps 12",),
+    "report": ("results/punch",),
+    "schema": ("-o thermowear.schema.json",),
+    "completion": ("bash > ~/.local/share/bash-completion/completions/thermowear",),
+}
+"""Arguments of each command, for its help."""
+_FILES = {"bash": "_shtab_compgen_files", "zsh": "_files", "tcsh": "f"}
+_FOLDERS = {"bash": "_shtab_compgen_dirs", "zsh": "_files -/", "tcsh": "d"}
+
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str):
@@ -72,7 +97,8 @@ def parser() -> argparse.ArgumentParser:
     _command(commands, "cases", "list the starter cases")
 
     init = _command(commands, "init", "write a starter case to edit")
-    init.add_argument("name", metavar="NAME")
+    name = init.add_argument("name", metavar="NAME")
+    _complete(name, {"bash": "_thermowear_starters"})
     _add_output(init, "FILE", help="default: NAME.toml")
     _add_flag(init, "--overwrite")
 
@@ -95,20 +121,30 @@ def parser() -> argparse.ArgumentParser:
     _add_flag(shape, "--overwrite")
 
     verify = _command(commands, "verify", "verify against reference solutions")
-    verify.add_argument("ids", metavar="ID", nargs="*", help="default: all but the slow ones")
+    ids = verify.add_argument(
+        "ids", metavar="ID", nargs="*", help="default: all but the slow ones"
+    )
+    _complete(ids, {"bash": "_thermowear_checks"})
     _add_flag(verify, "--slow", "include cases that take more than two minutes")
     _add_flag(verify, "--json", "print the checks as JSON")
 
     plot = _command(commands, "plot", "redraw the pictures of a results folder")
-    plot.add_argument("folder", metavar="DIR", type=Path)
+    _add_folder(plot)
 
     animate = _command(commands, "animate", "animate a run with analysis.frames")
-    animate.add_argument("folder", metavar="DIR", type=Path)
+    _add_folder(animate)
     _add_output(animate, "FILE", help=".gif or .mp4; default: DIR/animation.gif")
     animate.add_argument("--fps", metavar="N", type=_rate, default=8.0, help="frames per second")
 
     report = _command(commands, "report", "write report.html of a results folder")
-    report.add_argument("folder", metavar="DIR", type=Path)
+    _add_folder(report)
+
+    schema = _command(commands, "schema", "write the JSON schema of case files, for editors")
+    _add_output(schema, "FILE", help="default: standard output")
+    _add_flag(schema, "--overwrite")
+
+    completion = _command(commands, "completion", "print the completion of commands for a shell")
+    completion.add_argument("shell", choices=("bash", "zsh", "tcsh"))
     return result
 
 
@@ -127,9 +163,21 @@ def _rate(text: str) -> float:
 
 
 def _command(commands, name: str, text: str) -> argparse.ArgumentParser:
-    command = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+    examples = "".join(f"  thermowear {name} {example}\n" for example in EXAMPLES[name])
+    command = commands.add_parser(
+        name,
+        help=text,
+        description=text[0].upper() + text[1:] + ".",
+        epilog=f"examples:\n{examples}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     command.set_defaults(command=name)
     return command
+
+
+def _complete(argument: argparse.Action, completion: dict[str, str]) -> None:
+    """Let the shell complete an argument, see `shtab.complete`."""
+    argument.complete = completion  # type: ignore[attr-defined]
 
 
 def _add_flag(command, name: str, text: str | None = None) -> None:
@@ -137,7 +185,12 @@ def _add_flag(command, name: str, text: str | None = None) -> None:
 
 
 def _add_output(command: argparse.ArgumentParser, metavar: str, **settings: Any) -> None:
-    command.add_argument("-o", "--output", metavar=metavar, type=Path, **settings)
+    output = command.add_argument("-o", "--output", metavar=metavar, type=Path, **settings)
+    _complete(output, _FOLDERS if metavar == "DIR" else _FILES)
+
+
+def _add_folder(command: argparse.ArgumentParser) -> None:
+    _complete(command.add_argument("folder", metavar="DIR", type=Path), _FOLDERS)
 
 
 def _add_batch(command: argparse.ArgumentParser) -> None:
@@ -166,7 +219,7 @@ def _add_workers(command: argparse.ArgumentParser) -> None:
 
 
 def _add_case(command: argparse.ArgumentParser) -> None:
-    command.add_argument("case", metavar="CASE", type=Path)
+    _complete(command.add_argument("case", metavar="CASE", type=Path), _FILES)
     command.add_argument(
         "--set",
         metavar="KEY=VALUE",

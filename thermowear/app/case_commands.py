@@ -26,7 +26,7 @@ def init(chosen) -> int:
     files = {path: starter_text(chosen.name).encode()}
     files |= {path.parent / name: data for name, data in starter_files(chosen.name).items()}
     for file in files:
-        _check_absent(file, chosen.overwrite)
+        check_absent(file, chosen.overwrite)
     for file, data in files.items():
         try:
             file.write_bytes(data)
@@ -73,7 +73,7 @@ def mesh(chosen) -> int:
     case = load(chosen.case, tuple(chosen.overrides))
     if is_picture and case.model != "3d":
         raise CaseError(f"-o {chosen.output}: pictures of meshes require a 3d model")
-    _check_absent(chosen.output, chosen.overwrite)
+    check_absent(chosen.output, chosen.overwrite)
     if case.mesh.accuracy is not None:
         from ..simulation.from_case import with_accurate_mesh
         from .batch.computing import start_petsc
@@ -96,7 +96,7 @@ def shape(chosen) -> int:
 
     check_format(chosen.output)
     start_petsc()
-    _check_absent(chosen.output, chosen.overwrite)
+    check_absent(chosen.output, chosen.overwrite)
     shaped = shape(chosen.case, chosen.body, tuple(chosen.overrides), chosen.face)
     write_shape(shaped, chosen.output)
     deepest = 1e6 * shaped.design.depth.max()
@@ -106,6 +106,12 @@ def shape(chosen) -> int:
     return 0
 
 
-def _check_absent(path: Path, overwrite: bool) -> None:
+def check_absent(path: Path, overwrite: bool) -> None:
+    """Reject a file that exists unless it may be replaced.
+
+    Raises
+    ------
+    CaseError
+    """
     if os.path.exists(path) and not overwrite:  # Path.exists raises an error for invalid names
         raise CaseError(f"{path}: exists; use --overwrite or another name")

@@ -15,7 +15,7 @@ import warnings
 
 from ..errors import CaseError, CaseNote, ComputationError
 from ..interrupts import DeferredSignals
-from . import case_commands, folder_commands
+from . import case_commands, editor_commands, folder_commands
 from .arguments import parser
 from .verifying import verify
 
@@ -160,4 +160,6 @@ _COMMANDS = {
     "plot": folder_commands.plot,
     "animate": folder_commands.animate,
     "report": folder_commands.report,
+    "schema": editor_commands.schema,
+    "completion": editor_commands.completion,
 }

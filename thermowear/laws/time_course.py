@@ -78,20 +78,29 @@ class LoadHistory(TimeCourse):
 
     Attributes
     ----------
-    force, approach : tuple of float or None
-        Along the load direction [N, m]; at most one of them. Neither: the constant load.
-    tangential_force, tangential_displacement : tuple of float or None
-        Along x [N, m]; at most one of them.
+    force : tuple of float or None
+        Forces along the load direction, in place of an approach; without both, the constant load
+        [N].
+    approach : tuple of float or None
+        Displacements along the load direction, in place of forces [m].
+    tangential_force : tuple of float or None
+        Forces along x [N].
+    tangential_displacement : tuple of float or None
+        Displacements along x, in place of forces [m].
     cycle_start : float or None
         Start of the cycle that may be repeated up to the end; by default the first of the instants
         with the loads of the last one [s].
     moment : tuple of float or None
-        About the pivot in a section, anticlockwise [N m].
-    tangential_force_y, tangential_displacement_y : tuple of float or None
-        Along y in space [N, m]; at most one of them.
-    torque, twist : tuple of float or None
-        In space about the axis through the pivot against the load direction, by the right-hand rule
-        [N m, rad]; at most one of them.
+        Moments about the pivot in a section, anticlockwise [N m].
+    tangential_force_y : tuple of float or None
+        Forces along y, in space [N].
+    tangential_displacement_y : tuple of float or None
+        Displacements along y, in place of forces [m].
+    torque : tuple of float or None
+        Torques about the axis through the pivot against the load direction, by the right-hand rule,
+        in space [N m].
+    twist : tuple of float or None
+        Rotations about this axis, in place of torques [rad].
     """
 
     force: tuple[float, ...] | None = None

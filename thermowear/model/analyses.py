@@ -89,10 +89,11 @@ class TimedAnalysis(SteppedAnalysis):
     Attributes
     ----------
     end_time : float
-        [s]
+        End of the computed time [s].
     until : str or None
         ``"steady"``: stop when the steady state is reached within `steady_tolerance`.
     steady_tolerance : float
+        Largest distance from the steady state, relative to the largest steady pressure.
     max_steps : int
         Limit of the number of steps with error control.
     hits : tuple of float

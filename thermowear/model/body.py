@@ -21,21 +21,24 @@ class Material:
     Attributes
     ----------
     young_modulus : float
-        [Pa]
+        Young's modulus [Pa].
     poisson_ratio : float
+        Poisson's ratio.
     expansion : float
         Secant coefficient of thermal expansion from the ambient temperature [1/K].
     conductivity : float or None
         Conductivity at the ambient temperature [W/(m K)].
     density : float or None
-        [kg/m³]
+        Density, for transient temperatures and advection [kg/m³].
     specific_heat : float or None
-        [J/(kg K)]
+        Specific heat capacity, for transient temperatures and advection [J/(kg K)].
     hardness : float or None
         Hardness of the softer surface layer, for a pressure-dependent contact conductance [Pa].
-    expansion_factor, conductivity_factor : Table1D or None
-        Temperature-dependent factors of both [-, by K]: the thermal strain is
-        ``expansion factor(T) (T - ambient)``.
+    expansion_factor : Table1D or None
+        Temperature-dependent factor of the expansion [-, by K]: the thermal strain is ``expansion
+        factor(T) (T - ambient)``.
+    conductivity_factor : Table1D or None
+        Temperature-dependent factor of the conductivity [-, by K].
     label : str
         Name of the material in messages.
     """

@@ -92,7 +92,7 @@ class Interface:
         Coefficient of friction across the sliding direction, on inclined faces (mu_d of Páczelt
         and Mróz).
     conductance : Law, HardnessConductance or None
-        Contact conductance [W/(m² K)]; None: perfect contact.
+        Contact conductance, without it perfect contact [W/(m² K)].
     gap_conductance : float
         Conductance of separated faces [W/(m² K)].
     partition : float or str

@@ -9,6 +9,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import BeforeValidator, SerializeAsAny, ValidationInfo
 
 from ...errors import quoted
+from ..values.json_schema import AnyOf
 from ..values.section import MODEL, KeyFault, Section
 
 KNOWN: dict[str, type[AssemblyGeometry]] = {}
@@ -173,4 +174,6 @@ def _pick(data: Any, info: ValidationInfo) -> Any:
     return known[name].model_validate(data, context=context)
 
 
-AnyAssembly = Annotated[SerializeAsAny[AssemblyGeometry], BeforeValidator(_pick)]
+AnyAssembly = Annotated[
+    SerializeAsAny[AssemblyGeometry], BeforeValidator(_pick), AnyOf(typed=known_assemblies)
+]

@@ -42,6 +42,36 @@ class AssemblyCase(Section):
         are in ``heat``.
     contacts : dict of str to AssemblyContactTable
         By default those of the geometry; complete once the case has been read.
+    title : str
+        Heading of pictures and of the report.
+    model : str
+        Geometric model: an axisymmetric half section, a plane section in plane strain or plane
+        stress, or bodies in space.
+    geometry : Geometry
+        Shape of the bodies, or the file with their mesh or CAD model; its ``type`` selects the
+        keys.
+    mesh : MeshTable
+        Discretisation.
+    bodies : dict of str to BodyTable
+        Material and supports of each body, by its name in the geometry.
+    holders : dict of str to AssemblyHolderTable
+        Rigid holders of bodies, by name.
+    load : LoadTable
+        Pressures on surfaces.
+    motions : dict of str to BodyMotionTable
+        Sliding motion of each moving body, by its name.
+    wear : WearTable
+        Wear laws by body; bodies without one do not wear.
+    heat : HeatTable or None
+        Friction heat and thermal boundary conditions; without it the model is isothermal.
+    probes : dict of str to ProbeTable
+        Points whose temperature is recorded, by name.
+    analysis : Section
+        What is computed; its ``type`` selects the keys.
+    calibrate : CalibrationTable or None
+        Parameters to be found from measurements, for the command ``calibrate``.
+    study : StudyTable or None
+        Uncertain inputs, for the command ``study``.
     """
 
     title: str = ""

@@ -12,6 +12,7 @@ from ..tables.laws import Conductance
 from ..tables.materials import BodyTable
 from ..tables.tabulated import FactorHistory, History
 from ..values import units
+from ..values.json_schema import OrAlso
 from ..values.section import KeyFault, Number, Section, Switch, UserFile, number_or
 
 _PARTITION = number_or(
@@ -42,7 +43,7 @@ def _names(value):
     return (value,) if isinstance(value, str) else value
 
 
-Names = Annotated[tuple[str, ...], BeforeValidator(_names)]
+Names = Annotated[tuple[str, ...], BeforeValidator(_names), OrAlso({"type": "string"})]
 
 
 SUPPORTS = ("fixed", "symmetry", "rollers", "mid_plane")
@@ -56,8 +57,10 @@ class AssemblyContactTable(InterfaceTable):
     ----------
     between : tuple of str or None
         Both contact faces, that of body 1 first; by default those of this name in the geometry.
-    conductance, gap_conductance, partition
-        See `model.interface.Interface`; the partition is the fraction into body 1.
+    conductance, gap_conductance
+        See `model.interface.Interface`.
+    partition
+        Fraction of the friction heat released on body 1; ``"effusivity"``: ``e1/(e1 + e2)``.
     initial_shape : str or None
         File with an initial worn shape, as ``geometry.initial_shape`` of a pair.
     tie : bool
@@ -88,9 +91,10 @@ class AssemblyHolderTable(Section):
         Surface, or list of surfaces of several bodies that move as one.
     direction : tuple of float or None
         Load direction, the motion ``"z"``, by default into the body in a stack, else downwards.
-    point, pivot : tuple of float or None
-        Point of application of the force, by default the pivot, and centre of rotations, by default
-        that of the geometry, else the origin [m].
+    point : tuple of float or None
+        Point of application of the force, by default the pivot [m].
+    pivot : tuple of float or None
+        Centre of rotations, by default that of the geometry, else the origin [m].
     reaction : str or None
         Name of the holder that bears the force, as a caliper does that of its piston.
     moments : tuple of float or None
@@ -152,6 +156,8 @@ class BodyMotionTable(Section):
         True if the velocity is normal to a plane section.
     amplitude, frequency : float or None
         Reciprocating motion ``x = amplitude sin(2 π frequency t)`` [m, Hz].
+    history : FactorHistory or None
+        Time-dependent factor of the speed.
     """
 
     velocity: units.Velocity | None = None
@@ -188,8 +194,14 @@ class AssemblyBodyTable(BodyTable):
 
     Attributes
     ----------
-    fixed, symmetry, rollers, mid_plane : tuple of str
-        Surfaces that are clamped; that cannot move along x; along y; in space, along z.
+    fixed : tuple of str
+        Surfaces that are clamped.
+    symmetry : tuple of str
+        Surfaces that cannot move along x.
+    rollers : tuple of str
+        Surfaces that cannot move along y.
+    mid_plane : tuple of str
+        Surfaces that cannot move along z, in space.
     """
 
     fixed: Names = ()

@@ -16,7 +16,15 @@ _IN_BRACES = re.compile(r"\{([^{}]*)\}")
 
 
 class PriorTable(Section):
-    """Normal prior of a parameter, of its logarithm on a logarithmic scale."""
+    """Normal prior of a parameter, of its logarithm on a logarithmic scale.
+
+    Attributes
+    ----------
+    value : Scalar
+        Mean of the normal distribution.
+    deviation : Spread
+        Standard deviation: a quantity, a number or a percentage.
+    """
 
     value: ScalarKey
     deviation: SpreadKey
@@ -29,11 +37,16 @@ class ParameterTable(Section):
     ----------
     key : str or None
         Path of the key of the case that has its value; None if `CalibrationTable.set` uses it.
-    start, lower, upper : Scalar
-        First value, and bounds.
+    start : Scalar
+        First value of the search.
+    lower : Scalar
+        Lower bound.
+    upper : Scalar
+        Upper bound.
     scale : str
         ``"log"`` for parameters that are uncertain by a factor.
     prior : PriorTable or None
+        Knowledge of the value from elsewhere, as one more measurement.
     """
 
     key: str | None = None
@@ -103,6 +116,7 @@ class PosteriorTable(Section):
     steps : int
         Steps of each walker.
     seed : int
+        Seed of the random numbers.
     """
 
     walkers: Annotated[int, Field(ge=4, le=1000, multiple_of=2, strict=True)] | None = None
@@ -120,14 +134,18 @@ class CalibrationTable(Section):
     set : dict of str to str
         Values of further keys, with names of parameters in braces: ``"{k} 1/MPa^{b}"``.
     observations : dict of str to ObservationTable
+        Measurements, by name.
     deviations : str
         ``"known"``, or ``"estimated"`` from the scatter: those given are then relative weights.
     tolerance : float
         Distance from the optimum in standard errors at which the search ends.
     max_evaluations : int
+        Largest number of evaluations of the predictions, besides those for derivatives.
     confidence : float
         Level of the intervals.
     posterior : PosteriorTable or None
+        Sampling of the posterior distribution by a Markov chain; without it the intervals follow
+        from the linearised model.
     """
 
     parameters: Annotated[dict[str, ParameterTable], Field(min_length=1)]

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, PlainSerializer
 
 from ...errors import quoted
+from ..values.json_schema import WrittenAs
 from ..values.units import parse, registry, unit_of
 
 _NUMBER = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?", re.IGNORECASE)
@@ -72,7 +73,10 @@ def _scalar(value: Any) -> Scalar:
 
 
 ScalarKey = Annotated[
-    Scalar, BeforeValidator(_scalar), PlainSerializer(lambda scalar: scalar.written())
+    Scalar,
+    BeforeValidator(_scalar),
+    PlainSerializer(lambda scalar: scalar.written()),
+    WrittenAs({"type": ["number", "string"], "examples": ["2 MPa", 0.3]}),
 ]
 """Type of a key that holds a quantity of any unit, or a plain number."""
 
@@ -117,6 +121,9 @@ def _spread(value: Any) -> Spread:
 
 
 SpreadKey = Annotated[
-    Spread, BeforeValidator(_spread), PlainSerializer(lambda spread: spread.written())
+    Spread,
+    BeforeValidator(_spread),
+    PlainSerializer(lambda spread: spread.written()),
+    WrittenAs({"type": ["number", "string"], "examples": ["5 %", "0.1 MPa", 0.02]}),
 ]
 """Type of a key that holds a standard deviation: a quantity, a number, or a percentage."""

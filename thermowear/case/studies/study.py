@@ -28,13 +28,23 @@ class InputTable(Section):
 
     Attributes
     ----------
-    mean, deviation : Scalar, Spread
-        Of a normal distribution, which `lower` and `upper` may cut off.
-    median, factor : Scalar, float
-        Of a lognormal distribution: 95 % of the values lie between the median divided by the
-        factor, and multiplied by it.
-    lower, mode, upper : Scalar
-        Of uniform, loguniform and triangular distributions.
+    mean : Scalar or None
+        Mean of a normal distribution, which `lower` and `upper` may cut off.
+    deviation : Spread or None
+        Standard deviation of a normal distribution.
+    median : Scalar or None
+        Median of a lognormal distribution.
+    factor : float or None
+        Factor of a lognormal distribution: 95 % of the values lie between the median divided by it,
+        and multiplied by it.
+    lower : Scalar
+        Lower end of a uniform, loguniform or triangular distribution.
+    mode : Scalar
+        Most probable value of a triangular distribution.
+    upper : Scalar
+        Upper end of a uniform, loguniform or triangular distribution.
+    distribution : str
+        ``"normal"``, ``"lognormal"``, ``"uniform"``, ``"loguniform"`` or ``"triangular"``.
     """
 
     distribution: Literal["normal", "lognormal", "uniform", "loguniform", "triangular"]
@@ -106,6 +116,7 @@ class StudyTable(Section):
     indices : bool
         Compute Sobol indices, too.
     seed : int
+        Seed of the random numbers.
     """
 
     inputs: dict[str, InputTable] = {}

@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from ..values import units
+from ..values.json_schema import OrAlso
 from ..values.section import KeyFault, Number, Section, number_or
 
 
@@ -138,7 +139,10 @@ class Stability(OneWay):
 
     type: Literal["stability"]
     hot_spots: Annotated[
-        tuple[HotSpotNumber, ...], BeforeValidator(_up_to), AfterValidator(_each_once)
+        tuple[HotSpotNumber, ...],
+        BeforeValidator(_up_to),
+        AfterValidator(_each_once),
+        OrAlso({"type": "integer", "minimum": 0, "maximum": MOST_HOT_SPOTS}),
     ] = ()
     wave_lengths: Annotated[tuple[units.Length, ...], AfterValidator(_each_once)] = ()
     mirror: str | tuple[str, ...] | None = None

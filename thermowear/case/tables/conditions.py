@@ -9,6 +9,7 @@ from pydantic import PlainSerializer, PlainValidator, TypeAdapter, ValidationInf
 
 from ...laws.motions import TurningAxis, axis_of
 from ..values import units
+from ..values.json_schema import AnyOf, quantity_text
 from ..values.section import KeyFault, Number, Section, Switch, number_or
 from .laws import Conductance
 from .tabulated import FactorHistory, History, TemperatureHistory, TimeHistory
@@ -40,11 +41,11 @@ class HolderTable(Section):
 
 
 class LoadTable(Section):
-    """Loads that press body 1 on body 2; those without a note are keys of `model.holder.Holder`.
+    """Loads that press body 1 on body 2.
 
-    Exactly one of force, mean pressure and approach; a holder that can only rotate may have a
-    moment instead, and a fixed one needs forces or pressures on surfaces. Pressures on surfaces
-    may also act alone.
+    Keys without a note are those of `model.conditions.Holder`. Exactly one of force, mean pressure
+    and approach; a holder that can only rotate may have a moment instead, and a fixed one needs
+    forces or pressures on surfaces. Pressures on surfaces may also act alone.
 
     Attributes
     ----------
@@ -62,10 +63,10 @@ class LoadTable(Section):
     moments : tuple of float or None
         Moments about x and y through the pivot, in space, by the right-hand rule [N m].
     surfaces : dict of str to float
-        `surface_forces` of a fixed holder [N].
+        Forces along the load direction on surfaces of a body with a fixed holder [N].
     pressure : dict of str to float
-        `surface_pressures`, in addition to all other loads. Their resultant along a free motion of
-        the holder enters its equilibrium with the contact [Pa].
+        Pressures on surfaces, in addition to all other loads. Their resultant along a free motion
+        of the holder enters its equilibrium with the contact [Pa].
     """
 
     mean_pressure: units.Pressure | None = None
@@ -155,6 +156,7 @@ GivenTemperature = Annotated[
     float | TemperatureHistory,
     PlainValidator(_parse_temperature),
     PlainSerializer(_serialise_temperature),
+    AnyOf(quantity_text("K", "20 degC", ge=0.0), TemperatureHistory),
 ]
 """Constant [K], or history of a temperature."""
 

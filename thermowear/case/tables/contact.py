@@ -69,8 +69,12 @@ class ContactTable(InterfaceTable):
 
     Attributes
     ----------
-    method, penalty, theta, gamma
+    penalty, theta, gamma
         See `model.interface.ContactMethod`.
+    method
+        ``"condensed"``: static condensation of the bodies to the interface; ``"pointwise"``: the
+        same with contact conditions at each point, without wear, heat and friction; ``"penalty"``
+        and ``"nitsche"``: full system.
     positioning : bool
         Move the mesh until element ends coincide with the contact edges.
     """

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, SerializeAsAny, ValidationInfo
 
 from ...errors import quoted
+from ..values.json_schema import AnyOf
 from ..values.section import MODEL, KeyFault
 from .geometry import KNOWN, Geometry
 
@@ -35,4 +36,6 @@ def _pick(data: Any, info: ValidationInfo) -> Any:
     return known[name].model_validate(data, context=context)
 
 
-AnyGeometry = Annotated[SerializeAsAny[Geometry], BeforeValidator(_pick)]
+AnyGeometry = Annotated[
+    SerializeAsAny[Geometry], BeforeValidator(_pick), AnyOf(typed=known_geometries)
+]

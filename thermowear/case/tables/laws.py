@@ -26,6 +26,7 @@ from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law, Role, r
 from ...laws.place import PLACE, PlaceFunction
 from ...laws.plausible import require_interface_law, require_wear_rate
 from ..values import units
+from ..values.json_schema import AnyOf, WrittenAs, text_such_as
 from ..values.section import KeyFault, Number, Section
 from ..values.units import expression, quantity
 from .tabulated import must_increase, must_match
@@ -125,7 +126,8 @@ class PressureConductanceTable(Section):
     Attributes
     ----------
     coefficient : float
-        [1/m]
+        Conductance over the product of pressure over hardness and mean conductivity, see
+        `laws.coefficients` [1/m].
     """
 
     type: Literal["pressure"]
@@ -138,9 +140,9 @@ class TabulatedConductanceTable(Section):
     Attributes
     ----------
     pressure : tuple of float
-        Increasing [Pa].
+        Pressures, increasing [Pa].
     conductance : tuple of float
-        [W/(m² K)]
+        Conductances at these pressures [W/(m² K)].
     """
 
     type: Literal["table"]
@@ -226,19 +228,46 @@ def _written_conductance(value: Any) -> Any:
     return _CONDUCTANCE.dump_python(value) if isinstance(value, float) else _written(value)
 
 
+def _registered(role: Role, **others: type[Section]) -> dict[str, type[Section]]:
+    """Tables of the registered laws of a role, and others, by their type."""
+    return others | {name: _table_of(law) for name, law in registered_laws(role).items()}
+
+
 Friction = Annotated[
-    float | Expression | LawTable, PlainValidator(_friction), PlainSerializer(_written)
+    float | Expression | LawTable,
+    PlainValidator(_friction),
+    PlainSerializer(_written),
+    AnyOf(
+        {"type": "number", "minimum": 0.0},
+        {"type": "string", "examples": ["0.2 + 0.1 * exp(-v / (1 m/s))"]},
+        typed=lambda: _registered("friction"),
+    ),
 ]
 """Coefficient of friction: a number, an expression in p, v and T, or a registered law."""
 FluidPressure = Annotated[
-    PlaceFunction, PlainValidator(_fluid), PlainSerializer(lambda value: value.formula.text)
+    PlaceFunction,
+    PlainValidator(_fluid),
+    PlainSerializer(lambda value: value.formula.text),
+    WrittenAs(text_such_as("0.5 MPa", "1 MPa * (1 - r / (50 mm))")),
 ]
 """Pressure, or expression in x, y, z and r [Pa]."""
-RateOfWear = Annotated[Expression | LawTable, PlainValidator(_wear), PlainSerializer(_written)]
+RateOfWear = Annotated[
+    Expression | LawTable,
+    PlainValidator(_wear),
+    PlainSerializer(_written),
+    AnyOf(
+        {"type": "string", "examples": ["1e-8 1/MPa * mu * p * v"]},
+        typed=lambda: _registered("wear"),
+    ),
+]
 """Wear rate: an expression in p, v, T, depth and mu [m/s], or a registered law."""
 Conductance = Annotated[
     float | PressureConductanceTable | TabulatedConductanceTable | Expression | LawTable,
     PlainValidator(_conductance),
     PlainSerializer(_written_conductance),
+    AnyOf(
+        {"type": "string", "examples": ["2000 W/(m^2 K)", "500 W/(m^2 K) * p / (1 MPa)"]},
+        typed=lambda: _registered("conductance", **_CONDUCTANCES),
+    ),
 ]
 """Constant [W/(m² K)], table, expression in p, v and T, or registered law."""

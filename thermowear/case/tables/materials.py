@@ -17,6 +17,11 @@ class Properties(Section):
     """Keys of `model.body.Material`, or the name of the body whose material applies (``like``).
 
     Tables of factors are `conductivity_factor` and `expansion_factor`.
+
+    Attributes
+    ----------
+    like : str or None
+        Body whose material this one shares, in place of all other keys.
     """
 
     like: str | None = None

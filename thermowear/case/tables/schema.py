@@ -35,7 +35,19 @@ Grading = Annotated[Number, Field(ge=0.05, le=1.0)]
 
 
 class FaceMesh(Section):
-    """Mesh of one body where it differs from the default."""
+    """Mesh of one body where it differs from the default.
+
+    Attributes
+    ----------
+    elements : int or None
+        Number of elements along the contact.
+    grading : float or None
+        Size ratio of neighbouring elements towards the contact edges.
+    size : float or None
+        Largest element size of a body from CAD [m].
+    contact_size : float or None
+        Element size on the contact faces of a body from CAD [m].
+    """
 
     elements: Elements | None = None
     grading: Grading | None = None
@@ -56,9 +68,10 @@ class MeshTable(Section):
         Size ratio of neighbouring elements towards the contact edges; of bodies from CAD: size of
         the elements at the contact edges relative to those inside.
     size : float or None
-        Largest element size of bodies from CAD; None: a small part of the size of each body [m].
+        Largest element size of bodies from CAD, by default a small part of the size of each body
+        [m].
     contact_size : float or None
-        Element size on contact faces of bodies from CAD; None: half of the largest one [m].
+        Element size on contact faces of bodies from CAD, by default half of the largest one [m].
     skin : float or None
         Height of the first row of elements at the contact faces, where they are thicker otherwise
         [m].
@@ -121,7 +134,43 @@ def check_size(mesh, degree: int) -> None:
 
 
 class Case(Section):
-    """Complete case: model, bodies, loads, analysis."""
+    """Complete case: model, bodies, loads, analysis.
+
+    Attributes
+    ----------
+    title : str
+        Heading of pictures and of the report.
+    model : str
+        Geometric model: an axisymmetric half section, a plane section in plane strain or plane
+        stress, or bodies in space.
+    geometry : Geometry
+        Shape of the bodies, or the file with their mesh or CAD model; its ``type`` selects the
+        keys.
+    mesh : MeshTable
+        Discretisation.
+    bodies : dict of str to BodyTable
+        Material of each body, by its name in the geometry.
+    holder : HolderTable
+        Holder of body 1: its free rigid motions.
+    load : LoadTable
+        Loads that press body 1 on body 2.
+    motion : MotionTable or None
+        Sliding motion; without it the faces rest on each other.
+    contact : ContactTable
+        Friction, and the solver of the contact.
+    wear : WearTable
+        Wear laws by body; bodies without one do not wear.
+    heat : HeatTable or None
+        Friction heat and thermal boundary conditions; without it the model is isothermal.
+    probes : dict of str to ProbeTable
+        Points whose temperature is recorded, by name.
+    analysis : Section
+        What is computed; its ``type`` selects the keys.
+    calibrate : CalibrationTable or None
+        Parameters to be found from measurements, for the command ``calibrate``.
+    study : StudyTable or None
+        Uncertain inputs, for the command ``study``.
+    """
 
     title: str = ""
     model: Literal["axisymmetric", "plane-strain", "plane-stress", "3d"]

@@ -44,8 +44,9 @@ class MultiplierTable(Section, Generic[At, Factor]):
     Attributes
     ----------
     at : tuple of float
-        Increasing, in SI.
+        Places of the values, increasing, in SI.
     factor : tuple of float
+        Values of the factor at these places.
     """
 
     at: tuple[At, ...]
@@ -80,7 +81,17 @@ class SpeedTable(MultiplierTable[units.Speed, Positive]):
 
 
 class MultiplierTables(Section):
-    """Product of tabulated factors."""
+    """Product of tabulated factors.
+
+    Attributes
+    ----------
+    temperature : TemperatureTable or None
+        Factor by the temperature of the face.
+    pressure : PressureTable or None
+        Factor by the contact pressure.
+    speed : SpeedTable or None
+        Factor by the sliding speed.
+    """
 
     temperature: TemperatureTable | None = None
     pressure: PressureTable | None = None
@@ -106,7 +117,7 @@ class TimeHistory(Section):
     Attributes
     ----------
     time : tuple of float
-        Increasing [s].
+        Instants, increasing [s].
     repeat : bool
         Periodic continuation after the last instant.
     """
@@ -138,6 +149,16 @@ class TimeHistory(Section):
         except ValidationError as error:
             _report_line(error, columns)
             raise
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema, handler):
+        """A table with a file in place of lists is allowed, and its name alone."""
+        table = dict(handler.resolve_ref_schema(handler(schema)))
+        table.pop("required", None)
+        name = {"type": "string", "examples": ["history.csv"]}
+        what = {"description": "CSV file with a column for each list, in place of the lists."}
+        table["properties"] = table["properties"] | {"file": name | what}
+        return {"anyOf": [name, table]}
 
     @model_validator(mode="after")
     def _lists(self):
@@ -199,7 +220,7 @@ class TemperatureHistory(TimeHistory):
     Attributes
     ----------
     temperature : tuple of float
-        [K]
+        Temperatures at the instants [K].
     """
 
     COLUMNS = {"time": "s", "temperature": "degC"}

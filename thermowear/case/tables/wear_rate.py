@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, PlainSerializer, model_serializer, model_validator
 
 from ...laws.interfaces import Law
+from ..values.json_schema import WrittenAs, text_such_as
 from ..values.section import KeyFault, Number, Section
 from ..values.units import parse, registry
 from .laws import RateOfWear, wear_rate_of
@@ -36,7 +37,12 @@ def _text(value) -> str:
     return f"{value.magnitude!r} {unit}"
 
 
-Coefficient = Annotated[Any, BeforeValidator(_coefficient), PlainSerializer(_text, return_type=str)]
+Coefficient = Annotated[
+    Any,
+    BeforeValidator(_coefficient),
+    PlainSerializer(_text, return_type=str),
+    WrittenAs(text_such_as(_EXAMPLE)),
+]
 
 
 Stress = Literal["friction-stress", "pressure"]
@@ -57,8 +63,10 @@ class RateTable(Section):
     per : str
         ``"friction-stress"``: the coefficient multiplies ``(mu p)^b v^a``; ``"pressure"``:
         ``p^b v^a``.
-    pressure_exponent, velocity_exponent : float
-        b and a.
+    pressure_exponent : float
+        Exponent b of the stress.
+    velocity_exponent : float
+        Exponent a of the sliding speed.
     factor : MultiplierTables
         Factors of the rate: tables of the temperature of the body's own face, pressure and speed.
     """

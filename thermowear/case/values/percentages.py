@@ -7,6 +7,8 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, PlainSerializer
 
+from .json_schema import WrittenAs, text_such_as
+
 
 def _percentage(value: Any) -> float:
     """Number from text such as ``"1 %"``."""
@@ -20,5 +22,6 @@ Percentage = Annotated[
     float,
     BeforeValidator(_percentage),
     PlainSerializer(lambda value: f"{100.0 * value:.12g} %", return_type=str),
+    WrittenAs(text_such_as("1 %", pattern=r"^\s*(\d+\.?\d*|\.\d+)\s*%\s*$")),
 ]
 """Type of a key that holds a ratio, written as a percentage."""

@@ -8,6 +8,7 @@ from pydantic import PlainSerializer, PlainValidator
 
 from ...errors import quoted
 from ...laws.expressions import Region, parse_region
+from .json_schema import WrittenAs, text_such_as
 from .units import in_si
 
 
@@ -30,5 +31,10 @@ def _read(text: Any) -> Region:
     return region(text)
 
 
-RegionOfSpace = Annotated[Region, PlainValidator(_read), PlainSerializer(lambda found: found.text)]
+RegionOfSpace = Annotated[
+    Region,
+    PlainValidator(_read),
+    PlainSerializer(lambda found: found.text),
+    WrittenAs(text_such_as("x > 10 mm")),
+]
 """Region by comparisons of lengths in x, y, z and r."""

@@ -19,6 +19,7 @@ from ...errors import CaseError, quoted
 from ...laws.expressions import Dimension, Expression, parse_expression
 from ...laws.interfaces import UNITS
 from ...laws.place import PLACE
+from .json_schema import WrittenAs, quantity_text
 
 _LONGEST = 200
 """Largest number of characters of a quantity."""
@@ -179,6 +180,7 @@ def quantity(unit: str, example: str, **bounds: float):
         float,
         BeforeValidator(lambda text: _to_si(unit, example, bounds, text)),
         PlainSerializer(lambda value: f"{value!r} {unit}", return_type=str),
+        WrittenAs(quantity_text(unit, example, **bounds)),
     ]
 
 
@@ -199,7 +201,7 @@ def in_python(kind: Any, value: Any, name: str) -> float:
     CaseError
         If it is no such quantity, or out of bounds.
     """
-    read, written = kind.__metadata__
+    read, written, _ = kind.__metadata__
     bare = isinstance(value, int | float | np.number) and not isinstance(value, bool)
     try:
         return read.func(written.func(float(value)) if bare else value)

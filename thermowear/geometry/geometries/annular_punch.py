@@ -32,9 +32,16 @@ class AnnularPunch(Stacked):
 
     Attributes
     ----------
-    inner_radius, outer_radius, plate_radius : float [m]
-    punch_height, plate_height : float
-        Heights at the mean radius, from the face to the plane top and bottom [m].
+    inner_radius : float
+        Inner radius of the punch [m].
+    outer_radius : float
+        Outer radius of the punch [m].
+    plate_radius : float
+        Radius of the plate [m].
+    punch_height : float
+        Height of the punch at the mean radius, from the face to the plane top [m].
+    plate_height : float
+        Height of the plate at the mean radius, from the face to the plane bottom [m].
     face : str
         ``"flat"``, ``"conical"`` or ``"toroidal"``.
     cone_angle : float or None

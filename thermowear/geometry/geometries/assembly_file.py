@@ -15,6 +15,7 @@ from pydantic import (
 )
 
 from ...case.assembly.geometry import AssemblyGeometry
+from ...case.values.json_schema import LIST_OF_NAMES, OrAlso
 from ...case.values.section import MODEL, KeyFault, UserFile
 from ...case.values.units import Length
 from ..checks.assembly_checks import check_assembly
@@ -36,7 +37,7 @@ def _names(value: Any) -> Any:
     return value if isinstance(value, Mapping) else {name: name for name in value}
 
 
-SurfaceNames = Annotated[dict[str, str], BeforeValidator(_names)]
+SurfaceNames = Annotated[dict[str, str], BeforeValidator(_names), OrAlso(LIST_OF_NAMES)]
 
 
 class AssemblyFile(AssemblyGeometry):

@@ -27,13 +27,18 @@ class BeamOnFoundation(PlaneGeometry):
 
     Attributes
     ----------
-    length, height : float
-        Dimensions of the beam [m].
-    load_position, load_width : float
-        Centre, measured from the clamp, and width of the loaded part of the top [m].
+    length : float
+        Length of the beam [m].
+    height : float
+        Height of the beam [m].
+    load_position : float
+        Distance of the middle of the loaded part of the top from the clamp [m].
+    load_width : float
+        Length of the loaded part of the top [m].
     gap : float
         Gap between the unloaded beam and the foundation [m].
-    foundation_height : float [m]
+    foundation_height : float
+        Height of the foundation [m].
     """
 
     name = "beam-on-foundation"

@@ -73,11 +73,14 @@ class MeshFile(HalvableGeometry):
         the names of the bodies in the case; several sets are united.
     contact_names : tuple of str
         Key ``contact``: contact faces of body 1 and body 2.
-    held_name, fixed_name : str
-        Keys ``held`` and ``fixed``: surface of body 1 on the holder, fixed surface of body 2.
-    symmetry_names, roller_names : tuple of str
-        Keys ``symmetry`` and ``rollers``: surfaces on planes of symmetry x = const, and y = const
-        in space.
+    held_name : str
+        Key ``held``: surface of body 1 on the holder.
+    fixed_name : str
+        Key ``fixed``: fixed surface of body 2.
+    symmetry_names : tuple of str
+        Key ``symmetry``: surfaces on planes of symmetry x = const.
+    roller_names : tuple of str
+        Key ``rollers``: surfaces on planes of symmetry y = const, in space.
     mid_plane_names : tuple of str
         Key ``mid_plane``: surfaces of body 2, or the held one, on planes z = const in space.
     rotates_about : tuple of float or None

@@ -58,7 +58,8 @@ class OnBlock(Geometry):
 
     Attributes
     ----------
-    block_height : float [m]
+    block_height : float
+        Height of the block [m].
     block_key : str
         Key of the block's size along the contact.
     """
@@ -197,7 +198,8 @@ class RoundOnBlock(OnBlock):
 
     Attributes
     ----------
-    radius : float [m]
+    radius : float
+        Radius of the rounded body [m].
     zone : float or None
         Half-width (radius) of the contact zone to be meshed, by default the expected one of the
         unworn bodies; larger for contacts that grow by wear [m].
@@ -259,7 +261,8 @@ class SphereOnBlock(RoundOnBlock):
 
     Attributes
     ----------
-    block_radius : float [m]
+    block_radius : float
+        Radius of the block [m].
     """
 
     name = "sphere-on-block"

@@ -26,8 +26,10 @@ class OnStrip(Stacked, PlaneGeometry):
 
     Attributes
     ----------
-    strip_length, strip_height : float
-        Dimensions of the strip, at least as long as the face of body 1 [m].
+    strip_length : float
+        Length of the strip, at least that of the face of body 1 [m].
+    strip_height : float
+        Height of the strip [m].
     """
 
     models = ("plane-strain", "plane-stress")
@@ -82,8 +84,10 @@ class PunchOnStrip(OnStrip):
 
     Attributes
     ----------
-    width, height : float
-        Dimensions of the punch [m].
+    width : float
+        Width of the punch along the strip [m].
+    height : float
+        Height of the punch [m].
     stroke : float
         Amplitude of a reciprocating punch on a strip at rest: the strip is meshed for contact over
         the whole stroke [m].
@@ -125,9 +129,12 @@ class PivotedBlock(OnStrip):
 
     Attributes
     ----------
-    face_start, face_end : float
-        X at the ends of the block's face, measured from the pivot [m].
-    block_height : float [m]
+    face_start : float
+        X at the left end of the block's face, measured from the pivot [m].
+    face_end : float
+        X at the right end of the block's face, measured from the pivot [m].
+    block_height : float
+        Height of the block [m].
     pivot_height : float
         Height of the pivot above the face [m].
     """

@@ -44,7 +44,10 @@ class PinOnDisk(Geometry):
 
     Attributes
     ----------
-    pin_radius, pin_height : float [m]
+    pin_radius : float
+        Radius of the pin [m].
+    pin_height : float
+        Height of the pin [m].
     end : str
         ``"flat"`` or ``"spherical"``.
     end_radius : float or None
@@ -54,7 +57,12 @@ class PinOnDisk(Geometry):
         of the unworn bodies; larger for contacts that grow by wear [m].
     track_radius : float
         Distance of the axis of the pin from that of the disk [m].
-    disk_inner_radius, disk_outer_radius, disk_thickness : float [m]
+    disk_inner_radius : float
+        Inner radius of the disk [m].
+    disk_outer_radius : float
+        Outer radius of the disk [m].
+    disk_thickness : float
+        Thickness of the disk [m].
     """
 
     name = "pin-on-disk"

@@ -54,7 +54,13 @@ def expected_end(flat: float, radius: float, load: float) -> float:
 
 @dataclass(frozen=True)
 class RoundedPunch:
-    """Section of a punch; `flat` is the half-width of its flat face [m]."""
+    """Section of a punch; `flat` is the half-width of its flat face [m].
+
+    Attributes
+    ----------
+    height : float
+        Height of the punch [m].
+    """
 
     flat: float
     radius: float
@@ -138,8 +144,10 @@ class PunchOnBlock(PlaneOnBlock):
 
     Attributes
     ----------
-    width, height : float
+    height : float
         Dimensions of the punch [m].
+    width : float
+        Width of the punch along the block [m].
     edge_radius : float
         Radius of the rounding between the flat and the sides, 0 for sharp edges [m].
     """

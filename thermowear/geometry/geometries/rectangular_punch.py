@@ -33,9 +33,18 @@ class RectangularPunch(Geometry):
 
     Attributes
     ----------
-    size_x, size_y, height : float
-        Dimensions of the punch [m].
-    block_x, block_y, block_height : float [m]
+    size_x : float
+        Size of the punch along x [m].
+    size_y : float
+        Size of the punch along y [m].
+    height : float
+        Height of the punch [m].
+    block_x : float
+        Size of the block along x [m].
+    block_y : float
+        Size of the block along y [m].
+    block_height : float
+        Height of the block [m].
     stroke : float
         Amplitude of a punch that reciprocates along x: the block is meshed for contact over the
         whole stroke [m].

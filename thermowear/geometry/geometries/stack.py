@@ -21,7 +21,8 @@ class LayerTable(Section):
     ----------
     x : tuple of float
         Its range of x, or of the radius in an axisymmetric model [m].
-    height : float [m]
+    height : float
+        Height of the layer [m].
     """
 
     x: tuple[Coordinate, Coordinate]

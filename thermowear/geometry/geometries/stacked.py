@@ -154,8 +154,12 @@ class StackedBlocks(PlaneGeometry):
 
     Attributes
     ----------
-    width : float [m]
-    upper_height, lower_height : float [m]
+    width : float
+        Width of both blocks [m].
+    upper_height : float
+        Height of the upper block [m].
+    lower_height : float
+        Height of the lower block [m].
     """
 
     name = "stacked-blocks"

@@ -119,7 +119,7 @@ class StripBetweenCylinders(StripBetween):
     Attributes
     ----------
     radius : float
-        Of the cylinders [m].
+        Radius of the cylinders [m].
     strip_width : float
         Width of the strip, |x| <= strip_width / 2 [m].
     zone : float
@@ -166,10 +166,12 @@ class StripBetweenPunches(StripBetween):
 
     Attributes
     ----------
-    width, height : float
-        Dimensions of a punch [m].
+    width : float
+        Width of a punch along the strip [m].
+    height : float
+        Height of a punch [m].
     strip_length : float
-        [m]
+        Length of the strip [m].
     stroke : float
         Amplitude of a reciprocating strip: it is meshed for contact over the whole stroke [m].
     """

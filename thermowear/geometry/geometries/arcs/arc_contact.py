@@ -30,8 +30,10 @@ class ArcContact(PlaneGeometry):
 
     Attributes
     ----------
-    arc_start, arc_end : float
-        Angles at the edges of the contact, clockwise from 12 o'clock (+y) [rad].
+    arc_start : float
+        Angle at the first edge of the contact, clockwise from 12 o'clock (+y) [rad].
+    arc_end : float
+        Angle at its other edge, greater than that at the first one [rad].
     rest : str
         Surface of body 2 that is the rest of its contact circle.
     circle, far_circle : str
@@ -138,8 +140,10 @@ class BlockOnDisk(ArcContact):
 
     Attributes
     ----------
-    disk_radius, disk_bore : float
-        Radii of rim and bore [m].
+    disk_radius : float
+        Radius of the rim of the disk [m].
+    disk_bore : float
+        Radius of the bore of the disk, where it is fixed [m].
     block_height : float
         Height of the block's top above the highest point of the disk [m].
     """

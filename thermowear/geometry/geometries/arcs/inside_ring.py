@@ -45,10 +45,12 @@ class RingSegmentOnDisk(InsideRing):
 
     Attributes
     ----------
-    disk_radius, disk_outer_radius : float
-        Inner radius of the disk, where they touch, and its outer radius [m].
+    disk_radius : float
+        Inner radius of the disk, where both bodies touch [m].
+    disk_outer_radius : float
+        Outer radius of the disk, where it is fixed [m].
     segment_thickness : float
-        Radial thickness [m].
+        Radial thickness of the segment [m].
     """
 
     name = "ring-segment-on-disk"
@@ -83,10 +85,14 @@ class DrumBrake(InsideRing):
 
     Attributes
     ----------
-    drum_radius, drum_thickness : float
-        Inner radius of the drum, where the lining touches, and its radial thickness [m].
-    lining_thickness, shoe_thickness : float
-        Radial thicknesses [m].
+    drum_radius : float
+        Inner radius of the drum, where the lining touches [m].
+    drum_thickness : float
+        Radial thickness of the drum [m].
+    lining_thickness : float
+        Radial thickness of the lining [m].
+    shoe_thickness : float
+        Radial thickness of the shoe [m].
     pivot : tuple of float
         Centre of rotation of the shoe; an end of the lining may lie on the line through it and the
         centre, where a rotation has no normal component [m].

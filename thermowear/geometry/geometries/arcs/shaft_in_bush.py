@@ -22,13 +22,13 @@ class ShaftInBush(InHoleGeometry):
     Attributes
     ----------
     shaft_radius : float
-        [m]
+        Radius of the shaft [m].
     shaft_depth : float
         Thickness of the elastic ring of the shaft around its rigid core [m].
     bush_clearance : float
         Radial clearance: radius of the bush's hole minus that of the shaft [m].
     bush_thickness : float
-        [m]
+        Radial thickness of the bush [m].
     """
 
     name = "shaft-in-bush"

@@ -30,8 +30,10 @@ class ShoeTable(Section):
 
     Attributes
     ----------
-    arc_start, arc_end : float
-        Angles at the ends of its lining, clockwise from 12 o'clock (+y) [rad].
+    arc_start : float
+        Angle at the first end of its lining, clockwise from 12 o'clock (+y) [rad].
+    arc_end : float
+        Angle at the other end of its lining, greater than that at the first one [rad].
     pivot : tuple of float
         Centre of its rotation [m].
     """
@@ -60,11 +62,16 @@ class ShoesInDrum(AssemblyGeometry):
 
     Attributes
     ----------
-    drum_radius, drum_thickness : float
-        Inner radius of the drum, where the linings touch, and its radial thickness [m].
-    lining_thickness, shoe_thickness : float
-        Radial thicknesses [m].
+    drum_radius : float
+        Inner radius of the drum, where the linings touch [m].
+    drum_thickness : float
+        Radial thickness of the drum [m].
+    lining_thickness : float
+        Radial thickness of the linings [m].
+    shoe_thickness : float
+        Radial thickness of the shoes [m].
     shoes : dict of str to ShoeTable
+        Places of the shoes, by name.
     thickness : float
         Thickness that forces refer to: the width of the shoes [m].
     """

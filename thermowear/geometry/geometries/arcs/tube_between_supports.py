@@ -51,15 +51,20 @@ class TubeBetweenSupports(AssemblyGeometry):
 
     Attributes
     ----------
-    tube_radius, tube_wall : float
-        Outer radius and wall thickness of the tube [m].
-    support_clearance, support_thickness : float
-        Radius of a support's face minus that of the tube, and radial thickness [m].
+    tube_radius : float
+        Outer radius of the tube [m].
+    tube_wall : float
+        Wall thickness of the tube [m].
+    support_clearance : float
+        Radius of a support's face minus that of the tube [m].
+    support_thickness : float
+        Radial thickness of the supports [m].
     support_arc : float
         Angle that each support covers, with the contact in the middle [rad].
     zone : float
         Half-width of the fine mesh of each contact [m].
     supports : dict of str to SupportTable
+        Places of the supports, by name.
     thickness : float
         Thickness that forces refer to: the length of the supports along the tube [m].
     """

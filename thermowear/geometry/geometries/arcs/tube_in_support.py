@@ -18,14 +18,17 @@ class TubeInSupport(InHoleGeometry):
 
     Attributes
     ----------
-    tube_radius, tube_wall : float
-        Outer radius and wall thickness of the tube [m].
+    tube_radius : float
+        Outer radius of the tube [m].
+    tube_wall : float
+        Wall thickness of the tube [m].
     support_clearance : float
         Radial clearance: radius of the hole minus that of the tube [m].
     support_thickness : float
         Thickness of the support around its hole [m].
     support_arc : float or None
-        Angle that the support covers, with the contact in the middle; None: all of the tube [rad].
+        Angle that the support covers, with the contact in the middle; by default all of the tube
+        [rad].
     """
 
     name = "tube-in-support"

@@ -41,7 +41,10 @@ class BallOnBlock(BallGeometry):
 
     Attributes
     ----------
-    block_radius, block_height : float [m]
+    block_radius : float
+        Radius of the block [m].
+    block_height : float
+        Height of the block [m].
     zone : float or None
         Radius of the finely meshed zone, by default that of the expected contact of the unworn
         bodies; larger for contacts that grow by wear [m].

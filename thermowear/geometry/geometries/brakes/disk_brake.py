@@ -39,11 +39,18 @@ class PadsOnDisk(Geometry):
 
     Attributes
     ----------
-    pad_inner_radius, pad_outer_radius, pad_thickness : float [m]
+    pad_inner_radius : float
+        Inner radius of the pads [m].
+    pad_outer_radius : float
+        Outer radius of the pads [m].
+    pad_thickness : float
+        Thickness of a pad [m].
     pad_angle : float
         Angle covered by all pads on one side of the disk [rad].
-    disk_inner_radius, disk_outer_radius : float
-        Radii of the disk, which must enclose those of the pads [m].
+    disk_inner_radius : float
+        Inner radius of the disk, less than that of the pads [m].
+    disk_outer_radius : float
+        Outer radius of the disk, greater than that of the pads [m].
     disk_thickness : float
         Thickness of the whole disk, half of which is meshed [m].
     widest_pad : float

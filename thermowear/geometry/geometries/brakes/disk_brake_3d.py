@@ -59,18 +59,26 @@ class DiskBrakeInSpace(Geometry):
 
     Attributes
     ----------
-    pad_inner_radius, pad_outer_radius : float [m]
+    pad_inner_radius : float
+        Inner radius of the pad [m].
+    pad_outer_radius : float
+        Outer radius of the pad [m].
     pad_angle : float
         Angle that the pad covers, symmetric about the x-axis [rad].
     pad_corner_radius : float or None
         Radius of its corners, sharp by default [m].
-    pad_thickness, plate_thickness : float
-        Thicknesses of lining and back plate [m].
-    chamfer_length, chamfer_depth : float or None
-        Chamfers along both radial ends of the lining [m].
+    pad_thickness : float
+        Thickness of the lining [m].
+    plate_thickness : float
+        Thickness of the back plate [m].
+    chamfer_length : float or None
+        Length of the chamfers along both radial ends of the lining [m].
+    chamfer_depth : float or None
+        Depth of these chamfers [m].
     piston_radius : float
         Radius of the piston, which holds the back plate in the middle [m].
-    disk_outer_radius : float [m]
+    disk_outer_radius : float
+        Outer radius of the rubbed ring [m].
     disk_thickness : float
         Thickness of the rubbed ring of the whole disk [m].
     half : bool
@@ -78,8 +86,10 @@ class DiskBrakeInSpace(Geometry):
         symmetry: of a disk between two equal pads, with a hat on either side.
     hat_radius : float
         Outer radius of the hat, where the ring begins [m].
-    hat_height, hat_thickness : float
-        Height of the hat above the rubbed face, and thickness of its wall and its flange [m].
+    hat_height : float
+        Height of the hat above the rubbed face [m].
+    hat_thickness : float
+        Thickness of the wall of the hat and of its flange [m].
     bore_radius, hub_radius : float
         Radius of the hole in the flange; the flange is fixed to the hub up to `hub_radius` [m].
     """

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import BeforeValidator, model_serializer, model_validator
 
+from ....case.values.json_schema import A_NAME, LIST_OF_NAMES, AnyOf, OrAlso
 from ....case.values.section import KeyFault, Number, Section
 from ....case.values.units import Coordinate
 from ...from_cad.request import BodyRequest, FaceChoice
@@ -69,7 +70,13 @@ class CadFaceTable(Section):
 
 
 class SolidPoint(Section):
-    """Point inside a solid [m]."""
+    """Point inside a solid.
+
+    Attributes
+    ----------
+    point : tuple of float
+        Its coordinates [m].
+    """
 
     point: Place
 
@@ -82,7 +89,9 @@ def _several(value: Any) -> Any:
     return tuple({"label": one} if isinstance(one, str) else one for one in every)
 
 
-CadFaces = Annotated[tuple[CadFaceTable, ...], BeforeValidator(_several)]
+CadFaces = Annotated[
+    tuple[CadFaceTable, ...], BeforeValidator(_several), AnyOf(A_NAME, CadFaceTable, several=True)
+]
 """Faces by one or several choices."""
 
 
@@ -93,7 +102,9 @@ def _solids(value: Any) -> Any:
     return tuple(every)
 
 
-CadSolids = Annotated[tuple[str | SolidPoint, ...], BeforeValidator(_solids)]
+CadSolids = Annotated[
+    tuple[str | SolidPoint, ...], BeforeValidator(_solids), AnyOf(A_NAME, SolidPoint, several=True)
+]
 """Solids by one or several labels, or points inside."""
 
 
@@ -106,7 +117,9 @@ def _surfaces(value: Any) -> Any:
     return value
 
 
-CadSurfaces = Annotated[dict[str, CadFaces], BeforeValidator(_surfaces)]
+CadSurfaces = Annotated[
+    dict[str, CadFaces], BeforeValidator(_surfaces), OrAlso(LIST_OF_NAMES)
+]
 """Surfaces of a body by their names, or a list of labels."""
 
 

@@ -121,9 +121,7 @@ def parser() -> argparse.ArgumentParser:
     _add_flag(shape, "--overwrite")
 
     verify = _command(commands, "verify", "verify against reference solutions")
-    ids = verify.add_argument(
-        "ids", metavar="ID", nargs="*", help="default: all but the slow ones"
-    )
+    ids = verify.add_argument("ids", metavar="ID", nargs="*", help="default: all but the slow ones")
     _complete(ids, {"bash": "_thermowear_checks"})
     _add_flag(verify, "--slow", "include cases that take more than two minutes")
     _add_flag(verify, "--json", "print the checks as JSON")

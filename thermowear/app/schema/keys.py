@@ -11,6 +11,13 @@ from .json_schema import case_schema
 
 NAME = "NAME"
 """Part of a path that is a name chosen in the case."""
+_EACH_BODY = "Table of a body, by its name in the geometry."
+_TYPES = {
+    "string": "text",
+    "number": "number",
+    "integer": "whole number",
+    "boolean": "true, false",
+}
 _LIMITS = {
     "x-greater-than": "> {}",
     "x-at-least": "≥ {}",
@@ -114,9 +121,6 @@ def _table(name: str, paths: tuple[str, ...], definition: dict[str, Any]) -> Tab
     return TableOfKeys(name, tuple(path[1:] for path in paths), form["description"], keys)
 
 
-_EACH_BODY = "Table of a body, by its name in the geometry."
-
-
 def _key(name: str, value: dict[str, Any], required) -> Key:
     default = "required" if name in required else _text(value.get("default"))
     kinds = tuple(dict.fromkeys(_kinds(value)))
@@ -155,7 +159,12 @@ def _words(value: dict[str, Any]) -> list[Any]:
     return value["enum"] if "enum" in value else [value["const"]]
 
 
-_SIMPLE = {"string": "text", "number": "number", "integer": "whole number", "boolean": "true, false"}
+_SIMPLE = {
+    "string": "text",
+    "number": "number",
+    "integer": "whole number",
+    "boolean": "true, false",
+}
 
 
 def _simple(value: dict[str, Any]) -> Iterator[str]:
@@ -163,7 +172,7 @@ def _simple(value: dict[str, Any]) -> Iterator[str]:
     for kind in types if isinstance(types, list) else [types]:
         example = next(iter(value.get("examples", ())), None)
         like = f", such as {example}" if kind == "string" and isinstance(example, str) else ""
-        yield f"{_SIMPLE.get(kind, 'table')}{like}"
+        yield f"{_TYPES.get(kind, 'table')}{like}"
 
 
 def _limits(value: dict[str, Any]) -> str:
@@ -174,6 +183,6 @@ def _limits(value: dict[str, Any]) -> str:
         forms += [*form.get("anyOf", ()), *form.get("prefixItems", ())]
         forms += [form[key] for key in ("items",) if isinstance(form.get(key), dict)]
         for key, text in _LIMITS.items():
-            if key in form and 1e-9 < abs(form[key]) < 1e6 or form.get(key) == 0:
+            if (key in form and 1e-9 < abs(form[key]) < 1e6) or form.get(key) == 0:
                 found[text.format(f"{form[key]:g}")] = None
     return ", ".join(found)

@@ -9,9 +9,7 @@ import re
 from pydantic import BaseModel
 
 _TITLE = re.compile(r"^Attributes\n-+\n", re.MULTILINE)
-_ENTRY = re.compile(
-    r"^(?P<names>\w+(?:, \w+)*)(?: : .*)?\n(?P<text>(?:(?: .*)?\n)*)", re.MULTILINE
-)
+_ENTRY = re.compile(r"^(?P<names>\w+(?:, \w+)*)(?: : .*)?\n(?P<text>(?:(?: .*)?\n)*)", re.MULTILINE)
 _REFERENCE = re.compile(r"`((?:model|laws)\.[a-z_.]+\.[A-Z]\w*)`")
 _ALONE = re.compile(r"See `((?:model|laws)\.[a-z_.]+\.[A-Z]\w*)`[.;]?(.*)", re.DOTALL)
 _UNIT = re.compile(r"\s*\[[^\]]*\](?: and \[[^\]]*\])?(?=\.?$)")

@@ -14,8 +14,10 @@ A_NAME: dict[str, Any] = {"type": "string"}
 LIST_OF_NAMES = {"type": "array", "items": A_NAME}
 _WORDS = {"gt": "greater than", "ge": "at least", "le": "at most", "ne": "other than"}
 _QUANTITY = r"^\s*[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?\s*(1\s*/\s*)?[^\s\d.]"
-"""Number and the first character of its unit; no two parts match the same text, so that long text is
-rejected at once."""
+"""Number and the first character of its unit.
+
+No two parts match the same text, so that long text is rejected at once.
+"""
 
 
 def quantity_text(unit: str, example: str, **bounds: float) -> dict[str, Any]:
@@ -99,8 +101,7 @@ class AnyOf:
         self, schema: Any, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
         found = [
-            deepcopy(form) if isinstance(form, dict) else _of(form, handler)
-            for form in self._forms
+            deepcopy(form) if isinstance(form, dict) else _of(form, handler) for form in self._forms
         ]
         for name, table in self._typed().items():
             found.append(_of(table, handler) | {"properties": {"type": {"const": name}}})

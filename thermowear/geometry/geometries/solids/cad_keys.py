@@ -117,9 +117,7 @@ def _surfaces(value: Any) -> Any:
     return value
 
 
-CadSurfaces = Annotated[
-    dict[str, CadFaces], BeforeValidator(_surfaces), OrAlso(LIST_OF_NAMES)
-]
+CadSurfaces = Annotated[dict[str, CadFaces], BeforeValidator(_surfaces), OrAlso(LIST_OF_NAMES)]
 """Surfaces of a body by their names, or a list of labels."""
 
 

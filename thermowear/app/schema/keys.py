@@ -134,7 +134,7 @@ def _text(default: Any) -> str:
 
 
 def _kinds(value: dict[str, Any]) -> Iterator[str]:
-    """What a value may hold, one form each."""
+    """Forms of a value, in words."""
     if "$ref" in value:
         yield f"<{value['$ref'].rpartition('/')[2]}>"
     elif "anyOf" in value or "oneOf" in value:

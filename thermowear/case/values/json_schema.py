@@ -1,4 +1,4 @@
-"""What keys hold in a case file where the stored value differs from it, for the JSON schema."""
+"""JSON schema of values of a case file whose form there differs from the stored one."""
 
 from __future__ import annotations
 

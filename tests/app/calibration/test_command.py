@@ -80,6 +80,11 @@ def test_pictures_again_and_never_over_others(capsys):
     assert mpimg.imread("c/fit.png")[..., :3].std() > 0.01
     assert main(["report", "c"]) == 0
     assert "not determined" not in Path("c/report.html").read_text().partition("</h1>")[0]
+    before = Path("c/calibration.json").read_text()
+    assert main([*words, "--overwrite", "--set", "calibrate.confidence=2"]) == 1
+    assert main([*words[:3], "scar=none.csv", *words[4:], "--overwrite"]) == 1
+    assert "cannot be read" in capsys.readouterr().err
+    assert Path("c/calibration.json").read_text() == before
     Path("d").mkdir()
     Path("d/fit.png").write_text("a picture")
     assert main(["calibrate", case, "--data", "scar.csv", "-o", "d", "--overwrite"]) == 1

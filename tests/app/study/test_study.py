@@ -97,6 +97,7 @@ def test_units_are_kept(tmp_path):
         )
 
 
+SPEED = {"distribution": "uniform", "lower": "0.1 rad/s", "upper": "0.2 rad/s"}
 MU = {"key": "contact.friction", "unit": "", "value": 0.25, "lower": 0.2, "upper": 0.3}
 MU |= {"scale": "log", "internal": float(np.log(0.25))}
 P = {"key": "load.mean_pressure", "unit": "MPa", "value": 50.0, "lower": 10.0, "upper": 90.0}
@@ -125,6 +126,10 @@ def test_calibrated_parameters_are_one_input(in_folder):
     )
     found = tw.study(ring({}, samples=8), calibration=folder)
     assert found.inputs == ("calibrated parameters",)
+    beside = ring({"motion.angular_velocity": SPEED}, samples=8, indices=True)
+    assert len(StudyPlan.of(load(beside), folder).design.inputs) == 2
+    with pytest.raises(CaseError, match="need two inputs"):
+        StudyPlan.of(load(beside))
 
 
 @pytest.mark.parametrize(
@@ -158,6 +163,11 @@ def test_invalid_samples_are_one_line():
     assert line.startswith("study.inputs.load.mean_pressure: ")
     assert " samples are invalid; load.mean_pressure: " in line
     assert line.endswith("limit the distribution by lower and upper")
+    long = PRESSURE | {"mean": "5 mm"}
+    with pytest.raises(
+        CaseError, match=r"study\.inputs\.load\.mean_pressure: .* mm; must be in Pa"
+    ):
+        tw.study(ring({"load.mean_pressure": long}))
     with pytest.raises(CaseError, match=r"load\.no_such_key"):
         tw.study(ring({"load.no_such_key": FRICTION}))
     with pytest.raises(CaseError, match=r"study\.inputs: missing; .*--calibration DIR"):

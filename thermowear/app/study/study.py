@@ -174,7 +174,7 @@ class StudyPlan:
         if indices and not table.indices:
             table = table.model_copy(update={"indices": True})
         if table.indices and len(inputs) < 2:
-            raise CaseError("--indices: Sobol indices need two inputs at least")
+            raise CaseError("study.indices: Sobol indices need two inputs at least")
         kept = {key: own for key, own in plain.items() if key not in ("study", "calibrate")}
         return cls(kept, table, study_design(inputs, table))
 

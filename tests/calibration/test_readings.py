@@ -182,3 +182,19 @@ def test_percentages_of_temperatures_are_refused(tmp_path):
     """requirement: a percentage of a temperature depends on its scale."""
     with pytest.raises(CaseError, match="depends on the temperature scale; give it in K"):
         measured(tmp_path / "d.csv", "time [s], max_temperature [degC]", "20, 60", deviation="1 %")
+
+
+@pytest.mark.parametrize(
+    ("head", "cells", "given", "value", "deviation"),
+    [
+        ("max_temperature [degC], deviation [degC]", "60, 2", {}, 333.15, 2.0),
+        ("max_temperature [degC]", "60", {"deviation": "2 degC"}, 333.15, 2.0),
+        ("approach [um]", "-5", {"deviation": "10 %"}, -5e-6, 5e-7),
+        ("approach [um], approach_deviation [nm]", "-5, 20", {}, -5e-6, 2e-8),
+    ],
+)
+def test_deviations_are_differences(tmp_path, head, cells, given, value, deviation):
+    """requirement: no offset of a temperature scale, no sign of the value."""
+    (one,) = measured(tmp_path / "d.csv", f"time [s], {head}", f"20, {cells}", **given)
+    assert one.values == pytest.approx([value], rel=1e-12, abs=0.0)
+    assert one.deviations == pytest.approx([deviation], rel=1e-9, abs=0.0)

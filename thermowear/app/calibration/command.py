@@ -90,10 +90,11 @@ def _finish(
     rows = rows_of(
         found.measurements,
         fit.predicted,
-        observed.deviations,
-        fit.jacobian,
+        found.deviations,
+        fit.jacobian * observed.deviations[:, None],
         found.normal,
         found.table.confidence,
+        fit.noise,
     )
     sample = None
     if found.posterior is not None:
@@ -119,9 +120,10 @@ def _finish_plan(folder: CalibrationFolder, console: Terminal, found: Planned) -
         found.measurements,
         found.predicted,
         found.deviations,
-        found.jacobian / found.deviations[:, None],
+        found.jacobian,
         found.design.complete.normal,
         found.table.confidence,
+        found.noise,
     )
     folder.finish(record, rows)
     _print_parameters(console, record)

@@ -10,9 +10,11 @@ import matplotlib.image as mpimg
 import numpy as np
 import pytest
 import tomli_w
+from matplotlib.figure import Figure
 
 import thermowear as tw
 from thermowear.app.cli import main
+from thermowear.output.calibration import draw_calibration
 
 from .rings import FRICTION, WEAR, K, tables, truth, volumes
 
@@ -59,6 +61,24 @@ def test_files_of_a_calibration(capsys):
     page = Path("c/report.html").read_text()
     assert "Correlation of the parameters" in page
     assert "data:image/png" in page
+
+
+def test_the_legend_tells_the_level_of_the_band(monkeypatch):
+    """requirement: the band of the predictions is that of `calibrate.confidence`."""
+    volumes(Path("scar.csv"), truth(), 0.02)
+    case = write_case(parameters={"k": WEAR}, confidence="80 %")
+    assert main(["calibrate", case, "--data", "scar.csv", "-o", "c", "--no-pictures"]) == 0
+    told = []
+    monkeypatch.setattr(Figure, "legend", lambda figure, handles, words, **_: told.extend(words))
+    draw_calibration(Path("c"))
+    assert "predicted, with 80 % band" in told
+    with Path("c/observations.csv").open(newline="") as file:
+        row = next(csv.DictReader(file))
+    own = json.loads(Path("c/calibration.json").read_text())["parameters"]["k"]
+    reach = np.log(own["interval"][1] / own["value"])
+    assert reach == pytest.approx(1.2815516 * own["standard_error"], rel=1e-6)
+    half = float(row["upper"]) - float(row["predicted"])
+    assert half == pytest.approx(reach * float(row["predicted"]), rel=0.05)  # V ~ k
 
 
 def test_pictures_again_and_never_over_others(capsys):

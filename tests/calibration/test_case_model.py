@@ -23,9 +23,9 @@ TABLE = CalibrationTable(
 LOADS = np.array([1.0, 2.0, 4.0])
 
 
-def experiment(name="wear_volume_1", **options):
+def experiment(name="wear_volume_1", deviation=1.0, **options):
     one = reading(name, {}, len(LOADS), None, {})
-    return Experiment({}, (Measurement("d", one, LOADS, LOADS),), **options)
+    return Experiment({}, (Measurement("d", one, LOADS, deviation * LOADS),), **options)
 
 
 class Product:

@@ -281,23 +281,18 @@ class _LeastSquares:
         _NearOptimum
             If the optimum is within the tolerance.
         """
-        predicted = self.predicted(internal)
-        rows = forward_jacobian(self.space, self.model, internal, predicted)
+        rows = forward_jacobian(self.space, self.model, internal, self.predicted(internal))
         rows = rows / self.observations.deviations[:, None]
         rows = np.concatenate([rows, self.space.prior_jacobian])
         residuals = self.residuals(internal)
         distance = distance_to_optimum(self.space, internal, rows, residuals, self.noise)
-        if distance < self.tolerance * self._factor(residuals, distance):
+        if distance < self.tolerance * self._factor(residuals):
             raise _NearOptimum(internal.copy())
         return rows
 
-    def _factor(self, residuals: np.ndarray, distance: float) -> float:
-        """Factor of the standard errors, by the residuals to be expected at the optimum.
-
-        The search then ends by the relative offset (Bates and Watts, Technometrics 23 (1981) 179).
-        """
+    def _factor(self, residuals: np.ndarray) -> float:
+        """Factor of the standard errors: the search ends by Bates and Watts' relative offset."""
         if not self.estimated:
             return 1.0
         count = len(self.observations)
-        left = max(float(np.sum(residuals[:count] ** 2)) - distance**2, 0.0)
-        return float(np.sqrt(left / max(count - len(self.space), 1)))
+        return float(np.sqrt(np.sum(residuals[:count] ** 2) / max(count - len(self.space), 1)))

@@ -184,6 +184,14 @@ def test_an_undetermined_calibration_is_refused(covariance, said, in_folder):
     calibration("d", [[0.01]], mu=MU)
     with pytest.raises(CaseError, match=r"study\.inputs\.contact\.friction: is a calibrated"):
         tw.study(ring({"contact.friction": FRICTION}), calibration="d")
+    template = {"set": {"contact.friction": "{mu}"}}
+    calibration("e", [[0.01]], template, mu=MU | {"key": None})
+    assert StudyPlan.of(load(ring({})), "e").design.overrides(0) == ("contact.friction=0.25",)
+    with pytest.raises(CaseError, match=r"contact\.friction: is a calibrated .* depends on one"):
+        tw.study(ring({"contact.friction": FRICTION}), calibration="e")
+    calibration("f", [[0.01]], {"planned": True}, mu=MU)
+    with pytest.raises(CaseError, match="is that of a plan"):
+        tw.study(ring({}), calibration="f")
 
 
 def test_invalid_samples_are_one_line():

@@ -178,6 +178,12 @@ def test_profiles_by_other_columns_are_refused(tmp_path, head, cells, said):
         measured(tmp_path / "d.csv", head, cells)
 
 
+def test_plain_deviations_need_a_plain_quantity(tmp_path):
+    """requirement: a deviation without unit is not taken for one in SI."""
+    with pytest.raises(CaseError, match="found the plain number 2; must be in m"):
+        measured(tmp_path / "d.csv", "time [s], max_wear_1 [um]", "20, 60", deviation=2)
+
+
 def test_percentages_of_temperatures_are_refused(tmp_path):
     """requirement: a percentage of a temperature depends on its scale."""
     with pytest.raises(CaseError, match="depends on the temperature scale; give it in K"):

@@ -29,12 +29,13 @@ def test_noise_of_rough_runs_determines_nothing():
     assert combination.deviation == pytest.approx(1e-3 / np.sqrt(3), rel=0.02)
     assert np.isinf(list(found.standard_errors.values())).all()
     assert found.intervals()["k"] == (0.0, np.inf)
+    assert found.notes()[0] == "the data do not determine k, mu one by one, but k · mu^1.00 only"
 
 
 def solution(model, measured, deviations):
     """Calibration of one parameter by a function."""
     table = CalibrationTable(parameters={"a": {"key": "x", "start": 0.2, "lower": -1, "upper": 3}})
-    space = ParameterSpace((Parameter("a", 0.2, -1.0, 3.0),))
+    space = ParameterSpace((Parameter("x", 0.2, -1.0, 3.0, short="a"),))
     found = fit(space, Observations(measured, deviations, ("y",) * 2), FunctionModel(model), 1e-3)
     identified = identify(space, found.jacobian)
     return Calibration(table, (), found, identified, (), None, 9, 0.1)
@@ -49,6 +50,14 @@ def test_kinks_and_large_residuals_are_noted():
     assert smooth.notes() == []
     (large,) = solution(lambda v: np.array([v[0], 2 - v[0]]), [1.0, 1.8], 0.1).notes()
     assert "reduced chi² 32" in large  # (0.8/0.1)²/2
+
+
+def test_bounds_and_data_without_effect_are_noted():
+    """requirement: by the short names of the parameters."""
+    beyond = solution(lambda v: np.array([v[0], v[0]]), [4.0, 4.0], 1.0)
+    assert beyond.notes() == ["a ended at a bound"]
+    nothing = solution(lambda v: np.array([1.0, 2.0]), [1.0, 2.0], 0.1)
+    assert nothing.notes() == ["the data do not determine a"]
 
 
 @pytest.mark.parametrize("mu", [0.05, 0.3, 0.9])

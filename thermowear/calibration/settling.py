@@ -114,8 +114,9 @@ def undetermined(found: Identifiability, further: tuple[Suggestion, ...]) -> lis
     """Sentences on parameters that are not determined, and on what would determine them."""
     if found.identified:
         return []
-    names = ", ".join(found.undetermined)
-    known = "; ".join(one.text for one in found.combinations)
-    only = f"but {known} only" if known else "nor any combination of them"
-    text = f"the data do not determine {names} one by one, {only}"
+    short = dict(zip(found.space.names, found.space.short_names, strict=True))
+    text = f"the data do not determine {', '.join(short[name] for name in found.undetermined)}"
+    if len(found.undetermined) > 1:
+        known = "; ".join(one.text for one in found.combinations)
+        text += f" one by one, {f'but {known} only' if known else 'nor any combination of them'}"
     return [text, *(f"this would settle it: {one.text}" for one in further)]

@@ -103,6 +103,12 @@ class Calibration:
         """Changes ``KEY=VALUE`` that give the case the calibrated values."""
         return self.table.overrides(self.values)
 
+    @property
+    def at_bounds(self) -> tuple[str, ...]:
+        """Names of parameters that a bound keeps from fitting better."""
+        short = dict(zip(self.fit.space.names, self.table.parameters, strict=True))
+        return tuple(short[name] for name in self.fit.at_bounds)
+
     def notes(self) -> list[str]:
         """Sentences on what the data do not determine, and on a fit that is not good."""
         found = [] if self.fit.converged else [f"the fit has {self.fit.message}"]
@@ -113,7 +119,7 @@ class Calibration:
                 "there: the predictions are not smooth (such as a maximum whose place changes), "
                 "and the intervals are rough"
             )
-        found += [f"{name} ended at a bound" for name in self.fit.at_bounds]
+        found += [f"{name} ended at a bound" for name in self.at_bounds]
         found += undetermined(self.identifiability, self.suggestions)
         p_value = self.fit.p_value
         if self.estimated:

@@ -163,6 +163,8 @@ def _in_si(columns: Columns, key: str, unit: str, difference: bool = False) -> n
 
 def _number(value: str | float, unit: str, difference: bool) -> float:
     if not isinstance(value, str):
+        if not registry().Quantity(1.0, unit_of(unit)).dimensionless:
+            raise ValueError(f"found the plain number {value:g}; must be in {unit}")
         return value
     given = parse(value, f"1 {unit}")
     if not given.is_compatible_with(unit_of(unit)):

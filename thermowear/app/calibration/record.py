@@ -44,7 +44,7 @@ def record_of(found: Calibration) -> dict[str, Any]:
         }
     return {
         **_parameters(found.table, found.normal, found.fit.values),
-        "at_bounds": list(fit.at_bounds),
+        "at_bounds": list(found.at_bounds),
         "identifiable": found.identifiability.identified,
         "singular_values": found.identifiability.singular_values.tolist(),
         "combinations": combinations,

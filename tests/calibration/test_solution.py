@@ -32,20 +32,29 @@ def test_noise_of_rough_runs_determines_nothing():
     assert found.notes()[0] == "the data do not determine k, mu one by one, but k · mu^1.00 only"
 
 
-def solution(model, measured, deviations):
+def solution(model, measured, deviations, given="known"):
     """Calibration of one parameter by a function."""
-    table = CalibrationTable(parameters={"a": {"key": "x", "start": 0.2, "lower": -1, "upper": 3}})
+    parameter = {"key": "x", "start": 0.2, "lower": -1, "upper": 3}
+    table = CalibrationTable(parameters={"a": parameter}, deviations=given)
     space = ParameterSpace((Parameter("x", 0.2, -1.0, 3.0, short="a"),))
-    found = fit(space, Observations(measured, deviations, ("y",) * 2), FunctionModel(model), 1e-3)
-    identified = identify(space, found.jacobian)
+    found = fit(
+        space,
+        Observations(measured, deviations, ("y",) * 2),
+        FunctionModel(model),
+        1e-3,
+        estimated=given == "estimated",
+    )
+    factor = found.scatter if given == "estimated" else 1.0
+    identified = identify(space, found.jacobian / factor)
     return Calibration(table, (), found, identified, (), None, 9, 0.1)
 
 
 def test_kinks_and_large_residuals_are_noted():
     """requirement: a search that ended at a kink, and residuals of many deviations, are told."""
-    kinked = solution(lambda v: np.array([max(v[0], 3 * v[0] - 2), 2 - v[0]]), [0.9, 0.75], 0.1)
-    (kink,) = kinked.notes()
-    assert "standard errors from the optimum by the derivatives" in kink
+    corner = lambda v: np.array([max(v[0], 3 * v[0] - 2), 2 - v[0]])  # noqa: E731
+    for size, given in ((0.1, "known"), (1e-3, "estimated"), (1e3, "estimated")):
+        (kink,) = solution(corner, [0.9, 0.75], size, given).notes()
+        assert "standard errors from the optimum by the derivatives" in kink
     smooth = solution(lambda v: np.array([v[0], 2 - v[0]]), [1.0, 1.1], 0.1)
     assert smooth.notes() == []
     (large,) = solution(lambda v: np.array([v[0], 2 - v[0]]), [1.0, 1.8], 0.1).notes()
@@ -62,13 +71,18 @@ def test_bounds_and_data_without_effect_are_noted():
 
 @pytest.mark.parametrize("mu", [0.05, 0.3, 0.9])
 def test_further_measurements_are_found_at_bounds(mu):
-    """requirement: a force that changes by mu settles k·mu, also where mu is at a bound."""
+    """requirement: a force that changes by mu settles k·mu, also where mu is at a bound.
+
+    The volume, which is k·mu itself, does not, and neither does a torque of rounding errors.
+    """
 
     class WithForce(Product):
         def _run(self, run):
             found = super()._run(run)
-            own = float(run.overrides[1].partition("=")[2])
+            k, own = (float(change.partition("=")[2]) for change in run.overrides)
             found.numbers["friction_force"] = 10.0 * own
+            found.numbers["friction_torque"] = 1.0 + 1e-4 * self.random.standard_normal()
+            found.numbers["wear_volume_1"] = 1e-9 * k * own
             return found
 
     space = space_of(TABLE)

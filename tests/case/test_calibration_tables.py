@@ -62,6 +62,10 @@ def test_templates():
         ({"start": "fast"}, "parameters.k.start: cannot read"),
         ({"prior": {"value": "1 m", "deviation": "1 %"}}, "parameters.k.prior: found '1.0 m'"),
         ({"prior": {"value": "1e-7 1/MPa", "deviation": 0.0}}, "prior.deviation: found 0.0"),
+        (
+            {"scale": "linear", "prior": {"value": "0 1/MPa", "deviation": "1 %"}},
+            "parameters.k.prior.deviation: must be greater than 0; a percentage of 0",
+        ),
         ({"first": 1}, "parameters.k.first: unknown key"),
     ],
 )
@@ -84,6 +88,11 @@ def test_faults_of_a_parameter(parameter, said):
         ({"parameters": {"k": K}, "deviations": "guessed"}, "deviations: found 'guessed'"),
         ({"parameters": {"k": K}, "posterior": {"walkers": 5}}, "posterior.walkers: found 5"),
         ({"parameters": {"k": K}, "observations": {"d": {"deviation": "-1 %"}}}, "deviation"),
+        (
+            {"parameters": dict.fromkeys(("k", "mu", "b"), MU) | {"k": K, "b": MU | {"key": "b"}}}
+            | {"posterior": {"walkers": 4}},
+            "posterior.walkers: must be 6 at least, two for each parameter",
+        ),
     ],
 )
 def test_faults_of_a_calibration(calibrate, said):
@@ -98,6 +107,10 @@ def test_faults_of_a_calibration(calibrate, said):
     ("own", "said"),
     [
         ({"distribution": "normal", "mean": 0.3}, "deviation: missing; a normal distribution"),
+        (
+            {"distribution": "normal", "mean": 0.0, "deviation": "1 %"},
+            "deviation: must be greater than 0; a percentage of 0",
+        ),
         ({"distribution": "uniform", "lower": 1.0, "upper": 0.5}, "upper: must be greater"),
         ({"distribution": "uniform", "lower": 0.1, "upper": "1 m"}, "found '1.0 m'"),
         ({"distribution": "uniform", "lower": 0.1, "upper": 0.2, "mode": 0.1}, "mode: not a key"),

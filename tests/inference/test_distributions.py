@@ -22,7 +22,7 @@ Q = (np.arange(200000) + 0.5) / 200000
     [
         (Normal(3.0, 0.5), 3.0, 0.5),
         (Uniform(1.0, 4.0), 2.5, 3 / np.sqrt(12)),
-        (Triangular(0.0, 1.0, 2.0), 1.0, 1 / np.sqrt(6)),
+        (Triangular(1.0, 1.5, 4.0), 6.5 / 3, np.sqrt((1 + 2.25 + 16 - 1.5 - 4 - 6) / 18)),
         (LogUniform(1.0, np.e), np.e - 1, np.sqrt((np.e**2 - 1) / 2 - (np.e - 1) ** 2)),
         (LogNormal.from_mean(2.0, 0.6), 2.0, 0.6),
         (TruncatedNormal(1.0, 0.5, lower=1.0), 1 + 0.5 * HALF, 0.5 * np.sqrt(1 - HALF**2)),

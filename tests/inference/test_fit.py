@@ -52,6 +52,7 @@ def test_scatter_estimates_the_deviations():
     """requirement: covariance times the reduced chi-squared, and Student's t of n - p."""
     found = line_fit(line_space())
     deviations = found.standard_errors * np.sqrt(found.reduced_chi2)
+    assert found.scatter == pytest.approx(np.sqrt(np.sum(found.residuals**2) / 4), rel=1e-12)
     half = stats.t.ppf(0.975, 4) * deviations
     assert found.scattered.standard_errors == pytest.approx(deviations, rel=1e-9)
     assert np.diff(found.scattered.intervals()).ravel() == pytest.approx(2 * half, rel=1e-9)
@@ -60,6 +61,30 @@ def test_scatter_estimates_the_deviations():
     assert np.isnan(two.p_value)
     with pytest.raises(ValueError, match="none is left"):
         _ = two.scattered
+
+
+def test_relative_weights_of_any_size_give_the_same_fit():
+    """requirement: a factor of all deviations has no effect, on the end of the search neither."""
+    curve = saturating(TIMES)
+    space = ParameterSpace((
+        Parameter("a", 5.0, 0.1, 100.0, log=True), Parameter("b", 20.0, 0.1, 100.0, log=True)
+    ))  # fmt: skip
+    exact = curve(np.array([10.0, 8.0]))
+    measured = exact + 0.05 * np.random.default_rng(4).standard_normal(len(TIMES))
+    one, other = (
+        fit(
+            space,
+            Observations(measured, deviation, ("d",) * 12),
+            FunctionModel(curve),
+            1e-3,
+            estimated=True,
+        )
+        for deviation in (0.05, 500.0)
+    )
+    assert other.values == pytest.approx(one.values, rel=1e-6)
+    assert other.scattered.standard_errors == pytest.approx(one.scattered.standard_errors, rel=1e-5)
+    best = fit(space, Observations(measured, 0.05, ("d",) * 12), FunctionModel(curve), 1e-8)
+    assert np.abs((other.internal - best.internal) / one.scattered.deviations).max() < 5e-3
 
 
 def test_logarithms_give_factors():

@@ -97,6 +97,22 @@ def test_close_loads_are_practically_not_enough():
     assert found.combinations[0].text == "k · 20.1^b"
 
 
+def test_small_exponents_are_kept():
+    """requirement: a factor of mu^0.20, which changes by 27 % within the bounds, is named."""
+    space = ParameterSpace((K, Parameter("friction.mu", 0.5, 0.3, 1.0, log=True)))
+    found = identify(space, weighted(space, lambda v: v[:1] * v[1] ** 0.2, [2e-3, 0.5]))
+    assert [combination.text for combination in found.combinations] == ["k · mu^0.20"]
+
+
+@pytest.mark.parametrize(("deviation", "practical"), [(3.9, False), (4.1, True)])
+def test_parameters_are_determined_within_their_bounds(deviation, practical):
+    """requirement: a deviation below the distance of the bounds, 4, is that of a parameter."""
+    space = ParameterSpace((Parameter("x", 1.0, -1.0, 3.0),))
+    found = identify(space, space.scale[None] / deviation)
+    assert found.practical.tolist() == [practical]
+    assert not found.structural.any()
+
+
 def test_independent_pairs_have_a_combination_each():
     """requirement: two products of two parameters, not mixed with each other."""
     names = ("one.k", "one.mu", "two.k", "two.mu")

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy import optimize
 
 from tests.inference.models import FunctionModel, depths
 from thermowear.errors import ComputationError
 from thermowear.inference import Parameter, ParameterSpace, central_jacobian, forward_jacobian
-from thermowear.inference.jacobian import principal_directions
+from thermowear.inference.jacobian import distance_to_optimum, principal_directions
 
 SPACE = ParameterSpace((
     Parameter("k", 1e-3, 1e-6, 1.0, log=True),
@@ -80,3 +81,37 @@ def test_directions_of_few_observations_are_complete():
     assert singular_values == pytest.approx([5.0, 0.0, 0.0], abs=1e-15)
     assert directions.T @ directions == pytest.approx(np.eye(3), abs=1e-14)
     assert np.abs(directions[:, 0]) == pytest.approx([0.6, 0.0, 0.8], abs=1e-14)
+
+
+def distance(jacobian, bounds, at, optimum):
+    """Distance of a point from the unbounded optimum of a linear model, and the exact one.
+
+    The exact one is that of the optimum within the bounds, in standard errors.
+    """
+    space = ParameterSpace(tuple(
+        Parameter(f"p{k}", 0.5 * (low + high), low, high, log=False)
+        for k, (low, high) in enumerate(bounds)
+    ))  # fmt: skip
+    rows = jacobian * space.scale
+    internal, best = space.internal(at), space.internal(optimum)
+    inside = optimize.lsq_linear(rows, rows @ best, space.bounds, tol=1e-14).x
+    residuals = rows @ (internal - best)
+    found = distance_to_optimum(space, internal, rows, residuals, 1e-9)
+    return found, np.linalg.norm(rows @ (internal - inside))
+
+
+def test_distance_of_a_linear_model_is_exact():
+    """requirement: the length of the step to the optimum, by its change of the predictions."""
+    jacobian = np.array([[3.0, 1.0], [1.0, -2.0], [0.5, 4.0]])
+    found, exact = distance(jacobian, [(-2.0, 4.0), (-3.0, 5.0)], [0.5, 1.0], [1.2, 0.3])
+    assert found == pytest.approx(exact, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("at", "optimum"), [(0.0004, -3.0), (0.0, -3.0), (0.0, 0.2), (0.9996, 3.0)]
+)
+def test_distance_near_bounds(at, optimum):
+    """requirement: to the bound where it holds a parameter, beside the step of the others."""
+    jacobian = np.array([[300.0, 1.0], [-100.0, 3.0], [0.0, 4.0]])  # orthogonal columns
+    found, exact = distance(jacobian, [(0.0, 1.0), (-9.0, 9.0)], [at, 1.0], [optimum, 1.01])
+    assert found == pytest.approx(exact, rel=1e-6)

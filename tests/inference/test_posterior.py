@@ -49,6 +49,26 @@ def test_density_of_batches():
     assert batches == [2]
 
 
+def test_density_with_an_unknown_factor_of_the_deviations():
+    """requirement: the common factor f integrated out with the prior 1/f, numerically."""
+    found = line_fit()
+    density = log_posterior(found.space, found.observations, line, estimated=True)
+    points = found.space.internal([found.values, found.values + [0.3, -0.1], [2.0, 1.5]])
+    logs = np.linspace(-12.0, 12.0, 20001)
+
+    def integrated(values):
+        squares = np.sum(((LINE @ values - found.observations.values) / 0.3) ** 2)
+        of_factor = np.exp(-squares / (2 * np.exp(2 * logs)) - 6 * logs)
+        prior = -(((values[0] - 1.0) / 0.2) ** 2) / 2
+        return np.log(np.trapezoid(of_factor, logs)) + prior
+
+    expected = [integrated(values) for values in found.space.values(points)]
+    assert np.diff(density(points)) == pytest.approx(np.diff(expected), rel=1e-6)
+    exact = Observations(LINE @ [1.0, 2.0], 0.3, ("y",) * 6)
+    at = log_posterior(found.space, exact, line, True)(found.space.internal([[1.0, 2.0]]))
+    assert np.isfinite(at).all()
+
+
 def test_short_chains_are_reported():
     """requirement: a sentence if there are fewer than 50 autocorrelation times."""
     space = line_fit().space
@@ -82,6 +102,27 @@ def test_posterior_of_a_linear_model_is_normal():
     )
     again = sample_posterior(found, line, steps=20, seed=3).values
     assert np.array_equal(again, sample_posterior(found, line, steps=20, seed=3).values)
+
+
+def test_the_beginning_is_left_out():
+    """requirement: five autocorrelation times of all walkers are no part of the sample."""
+    pytest.importorskip("emcee")
+    posterior = sample_posterior(line_fit(), line, steps=400, walkers=8, seed=1)
+    left_out = int(5 * posterior.autocorrelation.max())
+    assert 10 < left_out < 200
+    assert posterior.values.shape == (8 * (400 - left_out), 2)
+
+
+def test_posterior_with_estimated_deviations_is_student():
+    """requirement: deviations ten times too large: quantiles of Student's t with the scatter."""
+    pytest.importorskip("emcee")
+    space = ParameterSpace((Parameter("a", 0.0, -50.0, 50.0), Parameter("b", 1.0, -50.0, 50.0)))
+    observed = Observations([1.0, 2.9, 5.2, 6.8, 9.1, 11.3], 3.0, ("y",) * 6)
+    found = fit(space, observed, FunctionModel(lambda values: LINE @ values))
+    posterior = sample_posterior(found, line, steps=6000, seed=3, estimated=True)
+    expected = found.scattered.intervals()
+    reach = np.diff(expected)
+    assert np.abs((posterior.intervals() - expected) / reach).max() < 0.05
 
 
 def test_posterior_ends_at_bounds():

@@ -38,6 +38,8 @@ def test_bands_along_undetermined_directions_are_infinite():
     band = linear_band(np.ones(2), np.array([[1.0, 1.0], [1.0, 0.0]]), normal)
     assert band.deviations == pytest.approx([0.05, np.inf], rel=1e-12)
     assert band.lower[1] == -np.inf
+    near = np.array([[1.0, 1.0 - 1e-5], [1.0, 1.0 - 4e-5]])  # half of it along the direction
+    assert np.isfinite(linear_band(np.ones(2), near, normal).deviations).tolist() == [True, False]
 
 
 def test_quantiles_leave_out_failed_points():

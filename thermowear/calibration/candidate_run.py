@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..errors import ComputationError
+from ..errors import CaseError, ComputationError
 from ..model.analyses import TimedAnalysis, TransientAnalysis
 from .experiments import Experiment
 from .readings import summary_numbers
@@ -67,12 +67,19 @@ class Prediction:
 
 
 def predict(series, run: CandidateRun) -> Prediction:
-    """Compute a run in a series (`simulation.analyses.run.Series`) of runs."""
+    """Compute a run in a series (`simulation.analyses.run.Series`) of runs.
+
+    Values that the case does not allow are those of a failed run: the search goes elsewhere.
+    """
     from ..simulation.from_case import analysis_of, model_of, with_accurate_mesh
 
     experiment = run.experiment
     try:
-        case = with_accurate_mesh(experiment.case(run.overrides), series.comm)
+        case = experiment.case(run.overrides)
+    except CaseError as error:
+        return run.failed(error.faults[0])
+    try:
+        case = with_accurate_mesh(case, series.comm)
         analysis = analysis_of(case)
         if isinstance(analysis, TimedAnalysis):
             if experiment.ends_with_times():

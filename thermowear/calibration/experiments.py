@@ -60,9 +60,8 @@ class Experiment:
 
     def ends_with_times(self) -> bool:
         """Test whether nothing is measured at the end of the run, but all at given times."""
-        return self.located and all(
-            {"time", "sliding_distance"} & one.reading.at.keys() for one in self.measurements
-        )
+        timed = ({"time", "sliding_distance"} & m.reading.at.keys() for m in self.measurements)
+        return self.located and len(self.times) > 0 and all(timed)
 
     def compares_with_steady(self) -> bool:
         """Test whether a measured quantity refers to the steady state that a run approaches."""

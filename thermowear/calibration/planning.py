@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..case.studies.calibration import CalibrationTable
-from ..errors import ComputationError
+from ..errors import CaseError, ComputationError
 from ..inference import (
     Identifiability,
     MeasurementDesign,
@@ -38,6 +38,8 @@ class Planned:
     design : MeasurementDesign
     identifiability : Identifiability
     suggestions : tuple of Suggestion
+    noise : float
+        Relative noise of the derivatives.
     """
 
     table: CalibrationTable
@@ -49,6 +51,7 @@ class Planned:
     design: MeasurementDesign
     identifiability: Identifiability
     suggestions: tuple[Suggestion, ...]
+    noise: float
 
     def notes(self) -> list[str]:
         """Sentences on what the measurements would not determine."""
@@ -71,6 +74,11 @@ def expected(problem: Problem, runner: Runner) -> Planned:
         raise ComputationError(f"calibrate: the run failed: {model.failure(space.start)}")
     deviations, labels = problem.weights
     deviations = np.where(np.isnan(deviations), problem.relative * np.abs(predicted), deviations)
+    if (zero := deviations == 0.0).any():
+        raise CaseError(
+            f"calibrate.observations ({labels[int(np.argmax(zero))]}): the deviation is relative, "
+            "but a predicted value is 0; give an absolute deviation"
+        )
     internal = space.internal(space.start)
     jacobian = central_jacobian(space, model, internal, predicted)
     noise = problem.noise(model)
@@ -85,4 +93,5 @@ def expected(problem: Problem, runner: Runner) -> Planned:
         expected_accuracy(space, internal, jacobian, deviations, labels, noise),
         identified,
         suggestions(space, model, space.start, identified),
+        noise,
     )

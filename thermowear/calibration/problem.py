@@ -13,7 +13,7 @@ from ..inference import Normal, Parameter, ParameterSpace
 from ..inference.jacobian import NOISE
 from .candidate_run import Runner
 from .case_model import CaseModel
-from .experiments import experiments
+from .experiments import Experiment, experiments, overrides_of
 from .measurement import Measurement
 
 _ROUGH_NOISE = 0.05
@@ -22,22 +22,32 @@ _ROUGH_NOISE = 0.05
 
 @dataclass(frozen=True)
 class Problem:
-    """Case, parameters and measurements of a calibration."""
+    """Parameters, measurements and experiments of a calibration."""
 
-    case: AnyCase
     table: CalibrationTable
     space: ParameterSpace
     measurements: list[Measurement]
+    experiments: list[Experiment]
 
     @classmethod
     def of(cls, case: AnyCase, measurements: Sequence[Measurement]) -> Problem:
-        """Problem of a case with the table ``calibrate``."""
+        """Problem of a case with the table ``calibrate``.
+
+        Raises
+        ------
+        CaseError
+            If the measurements or the first values do not fit the case.
+        """
         assert case.calibrate is not None
-        return cls(case, case.calibrate, _space(case.calibrate), list(measurements))
+        table, space = case.calibrate, space_of(case.calibrate)
+        found = experiments(case, measurements)
+        for one in found:
+            one.case(overrides_of(table, space.start))
+        return cls(table, space, list(measurements), found)
 
     def model(self, runner: Runner) -> CaseModel:
         """Forward model, whose runs a runner computes."""
-        return CaseModel(self.table, experiments(self.case, self.measurements), runner)
+        return CaseModel(self.table, self.experiments, runner)
 
     def noise(self, model: CaseModel) -> float:
         """Relative noise of the derivatives."""
@@ -56,7 +66,7 @@ class Problem:
         return np.concatenate(each)
 
 
-def _space(table: CalibrationTable) -> ParameterSpace:
+def space_of(table: CalibrationTable) -> ParameterSpace:
     """Parameters in the units of their first values."""
     found = []
     for name, own in table.parameters.items():

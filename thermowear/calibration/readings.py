@@ -15,13 +15,13 @@ from ..results.points import InterfaceFields, part_of
 from ..results.quantity import TABLES, Quantity, split_key, table_of
 from ..results.summary_keys import GROUPS
 
-ALONG = ("time", "sliding_distance", "cycle")
-"""Columns that rows of a history are found by."""
 PLACES = ("x", "y", "z", "s")
 """Columns that points of a contact are found by."""
 _ROWS = ("history", "heat", "loads", "cycles", "contacts", "probes")
 """Tables of rows, in the order in which a quantity is looked for; by cycles the table of these."""
 _MASSES = {f"worn_mass_{k}": (f"wear_volume_{k}", k) for k in (1, 2)}
+_EQUAL = 1e-9
+"""Relative difference of times that are the same, and of places in their order."""
 
 
 @dataclass(frozen=True)
@@ -74,12 +74,24 @@ class Reading:
             values = self._in_rows(result)
         else:
             values = np.full(self.count, self._in_summary(result))
-        if not np.isfinite(values).all():
-            raise CaseError(f"{self.name}: has no value in the results of this case")
+        self._check_finite(values)
         return self.factor * values
 
+    def _check_finite(self, values: np.ndarray | float) -> None:
+        if not np.isfinite(values).all():
+            raise CaseError(f"{self.name}: has no value in the results of this case")
+
+    def _contact_in(self, result: Result) -> str:
+        if self.contact is None or self.contact not in result.contacts:
+            names = ", ".join(result.contacts)
+            raise CaseError(f"{self.name}: needs the contact; one of: {names}")
+        return self.contact
+
     def _in_summary(self, result: Result) -> float:
-        numbers = summary_numbers(result.summary)
+        summary = result.summary
+        if self.contact is not None and result.contacts:
+            summary = summary["contacts"][self._contact_in(result)]
+        numbers = summary_numbers(summary)
         if self.name in numbers:
             return numbers[self.name]
         known = ", ".join(sorted(numbers))
@@ -88,15 +100,18 @@ class Reading:
     def _in_rows(self, result: Result) -> np.ndarray:
         """Values between the rows of a table, by a shape-preserving cubic."""
         (along, wanted) = next(iter(self.at.items()))
-        name, contact = self.name, self.contact
+        name, part = self.name, self.contact if result.contacts else None
         if name in result.summary.get("probes", {}):
-            name, contact = "temperature", name
+            name, part = "temperature", name
         tables = result.tables()
         for stem in ["cycles"] if along == "cycle" else _ROWS:
             columns = TABLES[stem].columns
-            if stem in tables and {name, along} <= columns.keys():
-                rows = _of_part(tables[stem], contact, result)
+            # rows of the whole model are those of no part
+            of_part = part is None or not {"contact", "probe"}.isdisjoint(columns)
+            if stem in tables and of_part and {name, along} <= columns.keys():
+                rows = _of_part(tables[stem], part, result)
                 x, values = (np.array([getattr(r, n) for r in rows]) for n in (along, name))
+                self._check_finite(values)
                 return _between(x, values, wanted, along)
         raise CaseError(
             f"{self.name}: no table of this analysis has it by {along}; see docs/results.md"
@@ -110,22 +125,28 @@ class Reading:
             chosen = (times == time) | (np.isnan(times) & np.isnan(time))
             fields = self._interface(result, float(time))
             places = {name: values[chosen] for name, values in self.places.items()}
-            found[chosen] = _on_face(fields, self.name, places)
+            found[chosen] = _on_face(fields, self._column(fields), self.name, places)
         return found
 
+    def _column(self, fields: InterfaceFields) -> np.ndarray:
+        if self.name not in table_of(fields).columns:
+            raise CaseError(f"{self.name}: is no quantity of interface.csv; see docs/results.md")
+        values = getattr(fields, self.name)
+        self._check_finite(values)
+        return values
+
     def _interface(self, result: Result, time: float) -> InterfaceFields:
+        """Contact points at a time, or at the end of the run for NaN."""
         fields = result.interface
-        if not np.isnan(time) and result.outputs:
-            near = min(result.outputs, key=lambda one: abs(one - time))
-            end = result.summary.get("time_s", np.inf)
-            if abs(near - time) < abs(end - time):
-                fields = result.outputs[near]
+        if not np.isnan(time):
+            each = {result.summary.get("time_s", np.nan): fields} | result.outputs
+            same = [t for t in each if np.isclose(t, time, rtol=_EQUAL, atol=0.0)]
+            if not same:
+                raise ComputationError(f"{self.name}: the run has no contact points at {time:g} s")
+            fields = each[same[-1]]
         if not result.contacts:
             return fields
-        if self.contact not in result.contacts:
-            names = ", ".join(result.contacts)
-            raise CaseError(f"{self.name}: needs the contact; one of: {names}")
-        return part_of(fields, result.contacts[self.contact])
+        return part_of(fields, result.contacts[self._contact_in(result)])
 
 
 def summary_numbers(summary: dict[str, Any], above: str = "") -> dict[str, float]:
@@ -174,13 +195,13 @@ def _between(x: np.ndarray, values: np.ndarray, wanted: np.ndarray, along: str) 
     return PchipInterpolator(x, values[first])(np.clip(wanted, x[0], x[-1]))
 
 
-def _on_face(fields: InterfaceFields, name: str, places: dict[str, np.ndarray]) -> np.ndarray:
-    """Values of a field at points of the contact face."""
-    if name not in table_of(fields).columns:
-        raise CaseError(f"{name}: is no quantity of interface.csv; see docs/results.md")
-    values = getattr(fields, name)
+def _on_face(
+    fields: InterfaceFields, values: np.ndarray, name: str, places: dict[str, np.ndarray]
+) -> np.ndarray:
+    """Values at contact points, at places on the contact face."""
     at = np.stack([getattr(fields, place) for place in places], axis=1)
     wanted = np.stack(list(places.values()), axis=1)
+    _check_places(fields, name, at, list(places))
     for k, place in enumerate(places):
         margin = 0.02 * np.ptp(at[:, k]) + 1e-12
         low, high = at[:, k].min() - margin, at[:, k].max() + margin
@@ -194,6 +215,24 @@ def _on_face(fields: InterfaceFields, name: str, places: dict[str, np.ndarray]) 
         return PchipInterpolator(x, values[first], extrapolate=True)(wanted[:, 0])
     inside = LinearNDInterpolator(at, values)(wanted)
     return np.where(np.isnan(inside), NearestNDInterpolator(at, values)(wanted), inside)
+
+
+def _check_places(fields: InterfaceFields, name: str, at: np.ndarray, given: list[str]) -> None:
+    """Check that coordinates (n, m) tell the points of a contact face apart."""
+    section = bool(np.isfinite(fields.s).all())
+    if section:
+        steps = np.diff(at[np.argsort(fields.s, kind="stable"), 0])
+        largest = np.abs(steps).max(initial=0.0)
+        alone = len(given) == 1 and largest > 0.0
+        tell = alone and (steps.min() >= -_EQUAL * largest or steps.max() <= _EQUAL * largest)
+    else:
+        extent = np.linalg.svd(at - at.mean(axis=0), compute_uv=False)
+        tell = len(given) == 2 and extent[-1] > _EQUAL * extent[0]
+    if not tell:
+        words = "one that increases along it, such as s" if section else "two coordinates"
+        raise CaseError(
+            f"{name}: {', '.join(given)} do not tell the places on the contact face; give {words}"
+        )
 
 
 def reading(
@@ -222,7 +261,9 @@ def reading(
     if name in _MASSES:
         volume, body = _MASSES[name]
         if body not in densities:
-            raise CaseError(f"{name}: needs the density of the body")
+            raise CaseError(
+                f"{name}: needs the density of the body, and the contact if there are several"
+            )
         mass = Quantity(f"{name}_kg", f"worn mass, body {body}", "kg", "kg")
         return Reading(mass, volume, count, at, contact, densities[body])
     known = known_quantities(not at.keys().isdisjoint(PLACES))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..inference import Identifiability, ParameterSpace, settling
+from ..inference.jacobian import steps_within
 from ..results.quantity import split_key
 from ..results.summary_keys import GROUPS
 from .case_model import CaseModel
@@ -52,13 +53,15 @@ def suggestions(
     """
     if found.identified:
         return ()
-    internal, step = space.internal(values), model.step
-    offsets = step * np.eye(len(space))
-    others, opposite = (list(space.admissible(internal + s * offsets)) for s in (1, -1))
+    internal, steps = space.internal(values), steps_within(space, model.step)
+    inside = np.clip(internal, space.bounds[0] + steps, space.bounds[1] - steps)
+    if (inside != internal).any():  # at a bound there is no step to both sides
+        internal, values = inside, space.admissible(inside)
+    others, opposite = (list(space.admissible(internal + s * np.diag(steps))) for s in (1, -1))
     suggested: dict[str, Suggestion] = {}
     for candidates in (
-        _numbers(model, values, [others, opposite], step),
-        _conditions(model, values, others, step),
+        _numbers(model, values, [others, opposite], steps),
+        _conditions(model, values, others, steps),
     ):
         for direction in found.null.T:
             for one in settling(direction, candidates)[:_MOST]:
@@ -68,7 +71,7 @@ def suggestions(
 
 
 def _numbers(
-    model: CaseModel, values: np.ndarray, both: list[list[np.ndarray]], step: float
+    model: CaseModel, values: np.ndarray, both: list[list[np.ndarray]], steps: np.ndarray
 ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Measurable numbers of the summaries, with their derivatives by steps to both sides."""
     (base,) = model.numbers(values, [values])
@@ -79,18 +82,18 @@ def _numbers(
             continue
         ahead, behind = (np.array([o.get(name, np.nan) - number for o in one]) for one in sides)
         if np.linalg.norm(ahead + behind) <= _SMOOTH * np.linalg.norm(ahead):  # False for NaN
-            found[f"a measurement of {name}"] = np.array([number]), ahead[None] / step
+            found[f"a measurement of {name}"] = np.array([number]), ahead[None] / steps
     return found
 
 
 def _conditions(
-    model: CaseModel, values: np.ndarray, others: list[np.ndarray], step: float
+    model: CaseModel, values: np.ndarray, others: list[np.ndarray], steps: np.ndarray
 ) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """The present measurements under other loads and speeds, with their derivatives."""
     found = {}
     for key, changed in model.with_other_conditions().items():
         base, *moved = changed.neighbours(values, [values, *others])
-        slopes = (np.array(moved) - base).T / step
+        slopes = (np.array(moved) - base).T / steps
         if np.isfinite(slopes).all():
             found[f"the same measurements at another {key}"] = base, slopes
     return found
@@ -111,8 +114,9 @@ def undetermined(found: Identifiability, further: tuple[Suggestion, ...]) -> lis
     """Sentences on parameters that are not determined, and on what would determine them."""
     if found.identified:
         return []
-    names = ", ".join(found.undetermined)
-    known = "; ".join(one.text for one in found.combinations)
-    only = f"but {known} only" if known else "nor any combination of them"
-    text = f"the data do not determine {names} one by one, {only}"
+    short = dict(zip(found.space.names, found.space.short_names, strict=True))
+    text = f"the data do not determine {', '.join(short[name] for name in found.undetermined)}"
+    if len(found.undetermined) > 1:
+        known = "; ".join(one.text for one in found.combinations)
+        text += f" one by one, {f'but {known} only' if known else 'nor any combination of them'}"
     return [text, *(f"this would settle it: {one.text}" for one in further)]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..case.studies.calibration import CalibrationTable
-from ..errors import ComputationError
+from ..errors import CaseError, ComputationError
 from ..inference import (
     Fit,
     Identifiability,
@@ -17,6 +17,7 @@ from ..inference import (
     Posterior,
     fit,
     identify,
+    require_emcee,
     sample_posterior,
 )
 from .candidate_run import Runner
@@ -28,6 +29,8 @@ _FAR = 0.1
 """Distance from the optimum, in standard errors, from which on it is reported."""
 _UNLIKELY = 1e-3
 """Probability of residuals from which on they are reported as too large."""
+_OTHER = 1.5
+"""Factor of the scatter from which on the weight of priors is reported as not right."""
 
 
 @dataclass(frozen=True)
@@ -59,10 +62,24 @@ class Calibration:
     seconds: float
 
     @property
+    def estimated(self) -> bool:
+        """True if the deviations are known but for a common factor, which the scatter gives."""
+        return self.table.deviations == "estimated"
+
+    @property
+    def deviations(self) -> np.ndarray:
+        """Standard deviations of the measurements, as given or by the scatter [SI], shape (n,)."""
+        return self.fit.observations.deviations * self._factor
+
+    @property
+    def _factor(self) -> float:
+        """Factor of the given deviations."""
+        return self.fit.scatter if self.estimated else 1.0
+
+    @property
     def normal(self) -> JointNormal:
         """Distribution of the parameters, by the given deviations or by the scatter."""
-        estimated = self.table.deviations == "estimated"
-        return self.fit.scattered if estimated else self.fit.uncertainty
+        return self.fit.scattered if self.estimated else self.fit.uncertainty
 
     @property
     def values(self) -> dict[str, float]:
@@ -86,19 +103,28 @@ class Calibration:
         """Changes ``KEY=VALUE`` that give the case the calibrated values."""
         return self.table.overrides(self.values)
 
+    @property
+    def at_bounds(self) -> tuple[str, ...]:
+        """Names of parameters that a bound keeps from fitting better."""
+        short = dict(zip(self.fit.space.names, self.table.parameters, strict=True))
+        return tuple(short[name] for name in self.fit.at_bounds)
+
     def notes(self) -> list[str]:
         """Sentences on what the data do not determine, and on a fit that is not good."""
         found = [] if self.fit.converged else [f"the fit has {self.fit.message}"]
-        if self.fit.converged and (off := self.fit.distance) > _FAR:
+        off = self.fit.distance / self._factor
+        if self.fit.converged and off > _FAR:
             found.append(
                 f"the search ended {off:.2g} standard errors from the optimum by the derivatives "
                 "there: the predictions are not smooth (such as a maximum whose place changes), "
                 "and the intervals are rough"
             )
-        found += [f"{name} ended at a bound" for name in self.fit.at_bounds]
+        found += [f"{name} ended at a bound" for name in self.at_bounds]
         found += undetermined(self.identifiability, self.suggestions)
         p_value = self.fit.p_value
-        if self.table.deviations == "known" and p_value < _UNLIKELY:
+        if self.estimated:
+            found += self._weighed_priors()
+        elif p_value < _UNLIKELY:
             found.append(
                 f"the residuals are larger than the deviations explain (reduced chi² "
                 f"{self.fit.reduced_chi2:.3g}, p = {p_value:.1g}): the model or the deviations "
@@ -107,6 +133,16 @@ class Calibration:
         if self.posterior is not None and self.posterior.warning:
             found.append(self.posterior.warning)
         return found
+
+    def _weighed_priors(self) -> list[str]:
+        """Sentence if priors were weighed against deviations of another size than the scatter."""
+        factor, priors = self._factor, len(self.fit.space.prior_jacobian)
+        if not priors or 1 / _OTHER < factor < _OTHER:
+            return []
+        return [
+            f"the scatter is {factor:.3g} times the given deviations, against which the priors "
+            "were weighed: multiply the deviations by this factor"
+        ]
 
 
 def solve(problem: Problem, runner: Runner) -> Calibration:
@@ -119,6 +155,9 @@ def solve(problem: Problem, runner: Runner) -> Calibration:
     ComputationError
         If a run with the first values fails.
     """
+    table = problem.table
+    if table.posterior is not None:
+        require_emcee()  # before anything is computed
     began, model = time.perf_counter(), problem.model(runner)
     observations = Observations(
         np.concatenate([one.values for one in problem.measurements]), *problem.weights
@@ -126,10 +165,14 @@ def solve(problem: Problem, runner: Runner) -> Calibration:
     start = problem.space.start
     if reason := (model.failure(start) if not np.isfinite(model.predict(start)).all() else ""):
         raise ComputationError(f"calibrate: the run with the first values failed: {reason}")
-    table = problem.table
-    search = table.tolerance, table.max_evaluations, problem.noise(model)
+    estimated = table.deviations == "estimated"
+    search = table.tolerance, table.max_evaluations, problem.noise(model), estimated
     found = fit(problem.space, observations, model, *search)
-    identified = identify(problem.space, found.jacobian, found.noise)
+    try:
+        scatter = found.scatter if estimated else 1.0
+    except ValueError as error:
+        raise CaseError(f'calibrate.deviations: found "estimated", but {error}') from None
+    identified = identify(problem.space, found.jacobian / scatter, found.noise)
     further = suggestions(problem.space, model, found.values, identified)
     posterior = None
     if table.posterior is not None:
@@ -140,6 +183,7 @@ def solve(problem: Problem, runner: Runner) -> Calibration:
             chosen.steps,
             chosen.walkers or 0,
             chosen.seed,
+            estimated,
         )
     seconds = time.perf_counter() - began
     return Calibration(

@@ -89,9 +89,18 @@ class Fit:
 
     @cached_property
     def scattered(self) -> JointNormal:
-        """Distribution for deviations known but for a common factor, by Student's t.
+        """Distribution for deviations known but for the factor `scatter`, by Student's t."""
+        rows, free = self.jacobian / self.scatter, len(self.observations) - self.determined
+        return JointNormal.from_jacobian(self.space, self.internal, rows, self.noise, free)
 
-        The factor is estimated by the scatter of the residuals. Priors do not count as residuals.
+    @property
+    def scatter(self) -> float:
+        """Common factor of the deviations by the residuals; priors do not count as residuals.
+
+        Raises
+        ------
+        ValueError
+            If there are no more observations than parameters that are determined.
         """
         free = len(self.observations) - self.determined
         if free <= 0:
@@ -99,8 +108,7 @@ class Fit:
                 f"{len(self.observations)} observations determine {self.determined} parameters: "
                 "none is left to estimate the scatter"
             )
-        rows = self.jacobian / max(np.sqrt(np.sum(self.residuals**2) / free), _LEAST)
-        return JointNormal.from_jacobian(self.space, self.internal, rows, self.noise, free)
+        return max(float(np.sqrt(np.sum(self.residuals**2) / free)), _LEAST)
 
     @property
     def determined(self) -> int:
@@ -177,6 +185,7 @@ def fit(
     tolerance: float = 1e-6,
     max_evaluations: int = 100,
     noise: float = NOISE,
+    estimated: bool = False,
 ) -> Fit:
     """Fit parameters to observations.
 
@@ -188,13 +197,16 @@ def fit(
         Largest number of predictions, without those for derivatives.
     noise : float
         Relative noise of the derivatives.
+    estimated : bool
+        True if deviations are known but for a common factor: standard errors of the tolerance are
+        those by the scatter.
 
     Raises
     ------
     ComputationError
         If predictions at the start, or beside an accepted point, cannot be computed.
     """
-    problem = _LeastSquares(space, observations, model, tolerance, noise)
+    problem = _LeastSquares(space, observations, model, tolerance, noise, estimated)
     start = space.internal(space.start)
     if not np.isfinite(problem.residuals(start)).all():
         raise ComputationError("the predictions at the start of the fit could not be computed")
@@ -246,6 +258,7 @@ class _LeastSquares:
     model: ForwardModel
     tolerance: float
     noise: float
+    estimated: bool
     known: dict[bytes, np.ndarray] = field(default_factory=dict)
 
     def predicted(self, internal: np.ndarray) -> np.ndarray:
@@ -268,11 +281,18 @@ class _LeastSquares:
         _NearOptimum
             If the optimum is within the tolerance.
         """
-        predicted = self.predicted(internal)
-        rows = forward_jacobian(self.space, self.model, internal, predicted)
+        rows = forward_jacobian(self.space, self.model, internal, self.predicted(internal))
         rows = rows / self.observations.deviations[:, None]
         rows = np.concatenate([rows, self.space.prior_jacobian])
-        at = internal, rows, self.residuals(internal)
-        if distance_to_optimum(self.space, *at, self.noise) < self.tolerance:
+        residuals = self.residuals(internal)
+        distance = distance_to_optimum(self.space, internal, rows, residuals, self.noise)
+        if distance < self.tolerance * self._factor(residuals):
             raise _NearOptimum(internal.copy())
         return rows
+
+    def _factor(self, residuals: np.ndarray) -> float:
+        """Factor of the standard errors: the search ends by Bates and Watts' relative offset."""
+        if not self.estimated:
+            return 1.0
+        count = len(self.observations)
+        return float(np.sqrt(np.sum(residuals[:count] ** 2) / max(count - len(self.space), 1)))

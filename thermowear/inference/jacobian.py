@@ -32,7 +32,7 @@ def forward_jacobian(
     ndarray, shape (n, p)
         Derivatives with respect to the internal coordinates.
     """
-    steps = _steps(space, model.step)
+    steps = steps_within(space, model.step)
     steps = np.where(internal + steps > space.bounds[1], -steps, steps)
     moved = _moved(space, model, internal, np.diag(steps))
     return _finite(space, (moved - predicted).T / steps)
@@ -47,7 +47,7 @@ def central_jacobian(
 
         f' ≈ (4 f(z + h) - f(z + 2 h) - 3 f(z))/(2 h)
     """
-    steps = _steps(space, model.step)
+    steps = steps_within(space, model.step)
     below = internal - steps < space.bounds[0]
     above = internal + steps > space.bounds[1]
     central = ~(below | above)
@@ -109,7 +109,8 @@ def distance_to_optimum(
     return float(np.hypot(np.linalg.norm(rows[:, held] @ to_bound[held]), np.linalg.norm(inside)))
 
 
-def _steps(space: ParameterSpace, step: float) -> np.ndarray:
+def steps_within(space: ParameterSpace, step: float) -> np.ndarray:
+    """Steps of finite differences, of which two fit between the bounds to one side, shape (p,)."""
     return np.minimum(step, _ROOM * space.widths)
 
 

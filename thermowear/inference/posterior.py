@@ -14,6 +14,7 @@ import numpy as np
 
 from ..errors import ComputationError
 from .fit import Fit
+from .joint_normal import JointNormal
 from .observations import Observations
 from .parameters import ParameterSpace
 
@@ -22,6 +23,7 @@ Predictions = Callable[[Sequence[np.ndarray]], Sequence[np.ndarray]]
 ENOUGH = 50
 """Number of autocorrelation times from which on their estimate is reliable (emcee)."""
 _BURN_IN = 5  # autocorrelation times that are left out at the start
+_LEAST = 1e-24  # smallest sum of squares, as data without errors have
 _SPREAD = 0.1  # part of the bounds that walkers cover along undetermined directions
 
 
@@ -65,9 +67,16 @@ class Posterior:
 
 
 def log_posterior(
-    space: ParameterSpace, observations: Observations, predictions: Predictions
+    space: ParameterSpace,
+    observations: Observations,
+    predictions: Predictions,
+    estimated: bool = False,
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Logarithm of the posterior density but for a constant, of points (m, p), shape (m,)."""
+    """Logarithm of the posterior density but for a constant, of points (m, p), shape (m,).
+
+    If the deviations are estimated, their common factor f is integrated out with the prior 1/f
+    (Jeffreys): n observations with the sum of squares S have the density ``S^(-n/2)``.
+    """
 
     def density(internal: np.ndarray) -> np.ndarray:
         result = np.full(len(internal), -np.inf)
@@ -75,6 +84,8 @@ def log_posterior(
         if len(inside):
             predicted = np.array(predictions(list(space.admissible(internal[inside]))))
             sums = np.sum(observations.residuals(predicted) ** 2, axis=1)
+            if estimated:
+                sums = len(observations) * np.log(np.maximum(sums, _LEAST))
             sums += np.sum(space.prior_residuals(internal[inside]) ** 2, axis=1)
             result[inside] = np.where(np.isfinite(sums), -sums / 2, -np.inf)
         return result
@@ -83,7 +94,12 @@ def log_posterior(
 
 
 def sample_posterior(
-    fit: Fit, predictions: Predictions, steps: int = 2000, walkers: int = 0, seed: int = 0
+    fit: Fit,
+    predictions: Predictions,
+    steps: int = 2000,
+    walkers: int = 0,
+    seed: int = 0,
+    estimated: bool = False,
 ) -> Posterior:
     """Sample the posterior distribution from a fit on.
 
@@ -94,21 +110,23 @@ def sample_posterior(
     steps : int
         Steps of each walker.
     walkers : int
-        Number of walkers, even; by default four for each parameter, at least 16.
+        Number of walkers, even, two for each parameter at least; by default four, at least 16.
+    estimated : bool
+        True if the deviations of the observations are known but for a common factor.
 
     Raises
     ------
     ComputationError
         If emcee is not installed.
     """
-    emcee = _emcee()
+    emcee = require_emcee()
     space = fit.space
     walkers = walkers or max(16, 4 * len(space))
-    sampler = emcee.EnsembleSampler(
-        walkers, len(space), log_posterior(space, fit.observations, predictions), vectorize=True
-    )
+    density = log_posterior(space, fit.observations, predictions, estimated)
+    sampler = emcee.EnsembleSampler(walkers, len(space), density, vectorize=True)
     legacy = np.random.RandomState(np.random.MT19937(seed))  # as emcee needs
-    start = emcee.State(_start(fit, walkers, seed), random_state=legacy.get_state())
+    normal = fit.scattered if estimated else fit.uncertainty
+    start = emcee.State(_start(normal, walkers, seed), random_state=legacy.get_state())
     sampler.run_mcmc(start, steps)
     times = np.nan_to_num(sampler.get_autocorr_time(tol=0), nan=np.inf)
     left_out = int(min(_BURN_IN * times.max(), steps / 2))
@@ -118,19 +136,25 @@ def sample_posterior(
     )
 
 
-def _start(fit: Fit, walkers: int, seed: int) -> np.ndarray:
-    """Points about a fit, as its covariance has them, within the bounds, shape (walkers, p)."""
-    rng, normal = np.random.default_rng(seed), fit.uncertainty
-    widths = fit.space.widths
+def _start(normal: JointNormal, walkers: int, seed: int) -> np.ndarray:
+    """Points about a mean, as its covariance has them, within the bounds, shape (walkers, p)."""
+    rng, mean = np.random.default_rng(seed), normal.mean
+    (lower, upper), widths = normal.space.bounds, normal.space.widths
     spread = np.concatenate([normal.factor, _SPREAD * widths[:, None] * normal.null], axis=1)
-    points = fit.internal + rng.standard_normal((walkers, spread.shape[1])) @ spread.T
-    uniform = fit.space.bounds[0] + rng.random((walkers, len(widths))) * widths
-    lower, upper = fit.space.bounds
-    close = np.clip(fit.internal + _SPREAD * (uniform - fit.internal), lower, upper)
+    points = mean + rng.standard_normal((walkers, spread.shape[1])) @ spread.T
+    uniform = lower + rng.random((walkers, len(widths))) * widths
+    close = np.clip(mean + _SPREAD * (uniform - mean), lower, upper)
     return np.where((points > lower) & (points < upper), points, close)
 
 
-def _emcee() -> Any:
+def require_emcee() -> Any:
+    """Package of the sampler.
+
+    Raises
+    ------
+    ComputationError
+        If it is not installed.
+    """
     try:
         import emcee
     except ImportError:

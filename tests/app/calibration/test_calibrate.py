@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 
 import thermowear as tw
 from thermowear.app.batch.pool import ProcessPool
+from thermowear.app.calibration.record import record_of, rows_of
+from thermowear.calibration.case_model import CaseModel
+from thermowear.calibration.measurement import Measurement
+from thermowear.calibration.readings import reading
+from thermowear.inference import JointNormal, Parameter, ParameterSpace
 
 from .rings import FRICTION, MU, TIMES, WEAR, K, rows_at_times, tables, truth, volumes, write
 
@@ -160,6 +167,23 @@ def test_priors_and_estimated_deviations(tmp_path):
     ratio = found.standard_errors["k"] / known.standard_errors["k"]
     assert ratio == pytest.approx(scatter, rel=1e-6)
     assert any("larger than the deviations explain" in note for note in known.notes())
+    # the size of relative weights has no effect, on combinations neither
+    rows = rows_at_times(truth())
+    wide = WEAR | {"lower": "1e-9 1/MPa", "upper": "1e-5 1/MPa"}
+    both = {"parameters": {"k": wide, "mu": FRICTION}, "deviations": "estimated"}
+    one = calibrated(path, **both)
+    columns = (TIMES, 1e9 * one.fit.observations.values, [20e9 * row.wear_volume_1 for row in rows])
+    head = "time [s], wear_volume_1 [mm^3], deviation [mm^3]"
+    other = calibrated(write(tmp_path / "w.csv", head, columns), **both)
+    (first,), (second,) = (found.identifiability.combinations for found in (one, other))
+    assert first.deviation == pytest.approx(found.standard_errors["k"], rel=1e-4)
+    assert second.deviation == pytest.approx(first.deviation, rel=1e-4)
+    assert other.deviations == pytest.approx(one.deviations, rel=1e-4)
+    assert record_of(other)["p_value"] is None
+    assert other.fit.scatter == pytest.approx(one.fit.scatter / 1000, rel=1e-4)
+    weighed = WEAR | {"prior": {"value": "2e-7 1/MPa", "deviation": "20 %"}}
+    noted = calibrated(tmp_path / "w.csv", parameters={"k": weighed}, deviations="estimated")
+    assert any("against which the priors were weighed" in note for note in noted.notes())
 
 
 def test_plan(tmp_path):
@@ -178,6 +202,17 @@ def test_plan(tmp_path):
     relative = write(tmp_path / "r.csv", "time [s]", ([50.0],))
     again = tw.plan(tw.load(tables(**table)), {"d": relative})
     assert again.design.complete.standard_errors[0] == pytest.approx(0.04, rel=0.06)
+    with pytest.raises(tw.CaseError, match=r"\(d\): the deviation is relative, but .* is 0"):
+        tw.plan(tw.load(tables(**table)), {"d": write(relative, "time [s]", ([0.0, 50.0],))})
+
+
+def test_the_start_says_nothing_of_wear(tmp_path):
+    """requirement: a volume of zero at the start is no obstacle, and determines nothing."""
+    head = "time [s], wear_volume_1 [mm^3], deviation [mm^3]"
+    path = write(tmp_path / "d.csv", head, ([0.0], [0.0], [1.0]))
+    found = calibrated(path, parameters={"k": WEAR})
+    assert not found.identifiability.identified
+    assert found.fit.predicted == [0.0]
 
 
 def test_posterior(tmp_path):
@@ -191,6 +226,36 @@ def test_posterior(tmp_path):
     logs = np.log(found.posterior.values[:, 0])
     assert logs.mean() == pytest.approx(np.log(found.values["k"]), abs=0.01)
     assert logs.std() == pytest.approx(found.standard_errors["k"], rel=0.4)
+
+
+def test_without_the_sampler_nothing_is_computed(tmp_path, monkeypatch):
+    """requirement: a missing package is told before the first run."""
+    monkeypatch.setitem(sys.modules, "emcee", None)
+    monkeypatch.setattr(CaseModel, "predict", None)
+    path = volumes(tmp_path / "d.csv", truth())
+    with pytest.raises(tw.ComputationError, match="needs the package emcee"):
+        calibrated(path, parameters={"k": WEAR}, posterior={})
+
+
+def test_bands_of_rough_runs_are_finite():
+    """requirement: noise of the derivatives along k·mu = const does not widen a band of k·mu."""
+    space = ParameterSpace((
+        Parameter("k", 1.0, 0.1, 10.0, log=True), Parameter("mu", 1.0, 0.1, 10.0, log=True)
+    ))  # fmt: skip
+    predicted, deviations = np.array([1.0, 2.0]), np.array([0.05, 0.1])
+    jacobian = np.array([[1.0, 1.0 + 1e-3], [2.0, 2.0 - 1e-3]])
+    weighted = jacobian / deviations[:, None]
+    normal = JointNormal.from_jacobian(space, np.zeros(2), weighted, 0.05)
+    depth = reading("max_wear_1", {}, 2, None, {})
+    measured = (Measurement("d", depth, predicted + 0.1, deviations),)
+    rows = rows_of(measured, predicted, deviations, jacobian, normal, 0.9, 0.05)
+    half = 1.6448536 * 0.05 / np.sqrt(2)  # two measurements of k·mu, each within 5 %
+    for row, value in zip(rows, predicted, strict=True):
+        assert row["upper"] - value == pytest.approx(half * value, rel=1e-2)
+        assert value - row["lower"] == pytest.approx(half * value, rel=1e-2)
+        assert row["weighted_residual"] == pytest.approx(0.1 / row["deviation"])
+    sharp = rows_of(measured, predicted, deviations, jacobian, normal, 0.9, 1e-6)
+    assert sharp[0]["upper"] == np.inf
 
 
 @pytest.mark.parametrize(
@@ -225,6 +290,13 @@ def test_cases_that_do_not_fit(tmp_path):
         calibrated(parameters={"k": WEAR})
     with pytest.raises(tw.CaseError, match="cannot be read"):
         calibrated(tmp_path / "none.csv", parameters={"k": WEAR})
+    head = "time [s], wear_volume_1 [mm^3], deviation [mm^3]"
+    one = write(tmp_path / "one.csv", head, ([50.0], [5.0], [1.0]))
+    with pytest.raises(tw.CaseError, match=r"deviations: .* 1 observations determine 1 parameters"):
+        calibrated(one, parameters={"k": WEAR}, deviations="estimated")
+    low = FRICTION | {"start": -0.1, "lower": -0.2, "scale": "linear"}
+    with pytest.raises(tw.CaseError, match=r"contact\.friction: found -0\.1"):
+        calibrated(one, parameters={"mu": low})
     path = volumes(tmp_path / "d.csv", truth())
     stopped = tables(parameters={"k": WEAR})
     stopped["analysis"]["max_steps"] = 2

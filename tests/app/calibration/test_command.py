@@ -10,9 +10,11 @@ import matplotlib.image as mpimg
 import numpy as np
 import pytest
 import tomli_w
+from matplotlib.figure import Figure
 
 import thermowear as tw
 from thermowear.app.cli import main
+from thermowear.output.calibration import draw_calibration
 
 from .rings import FRICTION, WEAR, K, tables, truth, volumes
 
@@ -61,6 +63,24 @@ def test_files_of_a_calibration(capsys):
     assert "data:image/png" in page
 
 
+def test_the_legend_tells_the_level_of_the_band(monkeypatch):
+    """requirement: the band of the predictions is that of `calibrate.confidence`."""
+    volumes(Path("scar.csv"), truth(), 0.02)
+    case = write_case(parameters={"k": WEAR}, confidence="80 %")
+    assert main(["calibrate", case, "--data", "scar.csv", "-o", "c", "--no-pictures"]) == 0
+    told = []
+    monkeypatch.setattr(Figure, "legend", lambda figure, handles, words, **_: told.extend(words))
+    draw_calibration(Path("c"))
+    assert "predicted, with 80 % band" in told
+    with Path("c/observations.csv").open(newline="") as file:
+        row = next(csv.DictReader(file))
+    own = json.loads(Path("c/calibration.json").read_text())["parameters"]["k"]
+    reach = np.log(own["interval"][1] / own["value"])
+    assert reach == pytest.approx(1.2815516 * own["standard_error"], rel=1e-6)
+    half = float(row["upper"]) - float(row["predicted"])
+    assert half == pytest.approx(reach * float(row["predicted"]), rel=0.05)  # V ~ k
+
+
 def test_pictures_again_and_never_over_others(capsys):
     """requirement: `plot` and `report` work on the folder; nothing is overwritten unasked."""
     volumes(Path("scar.csv"), truth(), 0.02)
@@ -80,6 +100,11 @@ def test_pictures_again_and_never_over_others(capsys):
     assert mpimg.imread("c/fit.png")[..., :3].std() > 0.01
     assert main(["report", "c"]) == 0
     assert "not determined" not in Path("c/report.html").read_text().partition("</h1>")[0]
+    before = Path("c/calibration.json").read_text()
+    assert main([*words, "--overwrite", "--set", "calibrate.confidence=2"]) == 1
+    assert main([*words[:3], "scar=none.csv", *words[4:], "--overwrite"]) == 1
+    assert "cannot be read" in capsys.readouterr().err
+    assert Path("c/calibration.json").read_text() == before
     Path("d").mkdir()
     Path("d/fit.png").write_text("a picture")
     assert main(["calibrate", case, "--data", "scar.csv", "-o", "d", "--overwrite"]) == 1

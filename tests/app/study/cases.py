@@ -41,9 +41,9 @@ def record(folder) -> dict:
     return json.loads(Path(folder, "run.json").read_text("utf-8"))
 
 
-def calibration(folder: str, covariance: object, **parameters: dict) -> str:
-    """Folder with a calibration."""
+def calibration(folder: str, covariance: object, more: dict | None = None, **parameters) -> str:
+    """Folder with a calibration, with more entries of its record."""
     Path(folder).mkdir()
-    content = {"parameters": parameters, "set": {}, "covariance": covariance}
+    content = {"parameters": parameters, "set": {}, "covariance": covariance} | (more or {})
     Path(folder, "calibration.json").write_text(json.dumps(content))
     return folder

@@ -8,9 +8,10 @@ from scipy import stats
 
 import thermowear as tw
 from thermowear.app.batch.pool import ProcessPool
+from thermowear.app.study.bands import bands
 from thermowear.app.study.design import study_design
 from thermowear.app.study.inputs import inputs_of
-from thermowear.app.study.study import StudyPlan
+from thermowear.app.study.study import StudyPlan, evaluated
 from thermowear.case import load
 from thermowear.errors import CaseError
 
@@ -32,16 +33,18 @@ def test_a_linear_response_to_a_normal_input_is_normal():
     pressure = found.bands.tables["interface"]
     ratio = pressure["pressure_Pa_97.5"] / pressure["pressure_Pa_50"]
     np.testing.assert_allclose(ratio, ratio[0], rtol=1e-6)  # the shape of the pressure is fixed
+    assert ratio[0] == pytest.approx(1 + 0.04 * stats.norm.ppf(0.975), abs=6e-3)
     assert found.indices is None
 
 
 def test_sobol_indices_of_a_product():
     """requirement: torque = friction x force x radius has the indices of a product, within 0.02."""
     pressure = {"distribution": "uniform", "lower": "20 MPa", "upper": "80 MPa"}
-    inputs = {"load.mean_pressure": pressure, "contact.friction": FRICTION}
+    friction = {"distribution": "uniform", "lower": 0.2, "upper": 0.3}
+    inputs = {"load.mean_pressure": pressure, "contact.friction": friction}
     found = tw.study(ring(inputs, samples=256, indices=True))
     k = found.outputs.index("friction_torque_Nm")
-    shares = np.array([60.0 / 50.0, 0.3 / 0.25]) ** 2 / 12
+    shares = np.array([60.0 / 50.0, 0.1 / 0.25]) ** 2 / 12
     variance = np.prod(1 + shares) - 1
     np.testing.assert_allclose(found.indices.first[:, k], shares / variance, atol=0.02)
     np.testing.assert_allclose(
@@ -79,6 +82,35 @@ def test_histories_have_bands():
     assert "shortest run" in found.bands.notes[0]
 
 
+def test_bands_at_other_points_are_interpolated():
+    """requirement: on x; a curve counts only where it has points."""
+    x = np.linspace(0.0, 1.0, 5)
+    whole = {"x": x, "y": 0 * x, "pressure": 1 + x}
+    short = {"x": 0.5 * x, "y": 0 * x, "pressure": 3 + 0.5 * x}
+    found = bands([{"interface": whole}, {"interface": short}])
+    assert "interpolated on x" in found.notes[0]
+    middle, high = (found.tables["interface"][f"pressure_Pa_{q}"] for q in ("50", "97.5"))
+    np.testing.assert_allclose(middle, np.where(x <= 0.5, 2 + x, 1 + x), rtol=1e-6)
+    np.testing.assert_allclose(high - middle, np.where(x <= 0.5, 0.95, 0.0), atol=1e-6)
+
+
+def test_numbers_that_vary_are_outputs():
+    """requirement: more than rounding, over the sample; counts of variants of the sample alone."""
+    case = load(ring(BOTH, samples=4))
+    design = study_design(inputs_of(case.study.inputs, tw.case.as_plain(case)), case.study)
+    count = len(design.values)
+    numbers = {
+        k + 1: {"max_pressure_Pa": 1 + 1e-6 * k, "approach_m": 1 + 1e-12 * k, "seconds": 1.0 * k}
+        for k in range(count)
+    }
+    found = evaluated(design, dict.fromkeys(numbers, "done"), numbers, {})
+    assert found.outputs == ("max_pressure_Pa",)
+    sample = 1 + 1e-6 * np.arange(5, 9)
+    assert found.quantiles.counts.tolist() == [4]
+    assert found.quantiles.mean == pytest.approx([sample.mean()], rel=1e-12)
+    assert found.swings.high[:, 0] == pytest.approx(1 + 1e-6 * np.array([3, 4]), rel=1e-12)
+
+
 def test_units_are_kept(tmp_path):
     """requirement: values are sampled in their units, and listed in SI, temperatures too."""
     ambient = {"distribution": "uniform", "lower": "10 degC", "upper": "30 degC"}
@@ -97,6 +129,7 @@ def test_units_are_kept(tmp_path):
         )
 
 
+SPEED = {"distribution": "uniform", "lower": "0.1 rad/s", "upper": "0.2 rad/s"}
 MU = {"key": "contact.friction", "unit": "", "value": 0.25, "lower": 0.2, "upper": 0.3}
 MU |= {"scale": "log", "internal": float(np.log(0.25))}
 P = {"key": "load.mean_pressure", "unit": "MPa", "value": 50.0, "lower": 10.0, "upper": 90.0}
@@ -125,6 +158,10 @@ def test_calibrated_parameters_are_one_input(in_folder):
     )
     found = tw.study(ring({}, samples=8), calibration=folder)
     assert found.inputs == ("calibrated parameters",)
+    beside = ring({"motion.angular_velocity": SPEED}, samples=8, indices=True)
+    assert len(StudyPlan.of(load(beside), folder).design.inputs) == 2
+    with pytest.raises(CaseError, match="need two inputs"):
+        StudyPlan.of(load(beside))
 
 
 @pytest.mark.parametrize(
@@ -147,6 +184,14 @@ def test_an_undetermined_calibration_is_refused(covariance, said, in_folder):
     calibration("d", [[0.01]], mu=MU)
     with pytest.raises(CaseError, match=r"study\.inputs\.contact\.friction: is a calibrated"):
         tw.study(ring({"contact.friction": FRICTION}), calibration="d")
+    template = {"set": {"contact.friction": "{mu}"}}
+    calibration("e", [[0.01]], template, mu=MU | {"key": None})
+    assert StudyPlan.of(load(ring({})), "e").design.overrides(0) == ("contact.friction=0.25",)
+    with pytest.raises(CaseError, match=r"contact\.friction: is a calibrated .* depends on one"):
+        tw.study(ring({"contact.friction": FRICTION}), calibration="e")
+    calibration("f", [[0.01]], {"planned": True}, mu=MU)
+    with pytest.raises(CaseError, match="is that of a plan"):
+        tw.study(ring({}), calibration="f")
 
 
 def test_invalid_samples_are_one_line():
@@ -158,6 +203,11 @@ def test_invalid_samples_are_one_line():
     assert line.startswith("study.inputs.load.mean_pressure: ")
     assert " samples are invalid; load.mean_pressure: " in line
     assert line.endswith("limit the distribution by lower and upper")
+    long = PRESSURE | {"mean": "5 mm"}
+    with pytest.raises(
+        CaseError, match=r"study\.inputs\.load\.mean_pressure: .* mm; must be in Pa"
+    ):
+        tw.study(ring({"load.mean_pressure": long}))
     with pytest.raises(CaseError, match=r"load\.no_such_key"):
         tw.study(ring({"load.no_such_key": FRICTION}))
     with pytest.raises(CaseError, match=r"study\.inputs: missing; .*--calibration DIR"):

@@ -9,14 +9,14 @@ import numpy as np
 from rich.table import Table
 
 from ... import load
-from ...calibration.planning import Planned
-from ...calibration.solution import Calibration
+from ...calibration.planning import Planned, expected
+from ...calibration.solution import Calibration, solve
 from ...case import AnyCase, as_plain
 from ...errors import CaseError
 from ...output.calibration import CalibrationFolder, draw_calibration, write_calibration_report
 from ...output.console import Terminal
 from ..batch.executors import Choice, Crew
-from .calibrate import calibrate, plan
+from .calibrate import problem_of, runner
 from .record import record_of, record_of_plan, rows_of
 
 _PARALLEL = 1000
@@ -36,7 +36,7 @@ def run_calibration(chosen) -> int:
 
 def _run_with(crew: Crew, chosen) -> int:
     case = load(chosen.case, tuple(chosen.overrides))
-    data = _data(case, chosen.data)
+    problem = problem_of(case, _data(chosen.data), chosen.plan)  # before a folder is cleared
     name = "plan" if chosen.plan else "calibration"
     path = chosen.output or Path("results") / f"{chosen.case.stem}-{name}"
     folder = CalibrationFolder(path, as_plain(case), chosen.overwrite)
@@ -44,15 +44,15 @@ def _run_with(crew: Crew, chosen) -> int:
     try:
         alone = chosen.executor == "processes" and chosen.processes is None
         workers = crew.workers(1, 1 if alone else _PARALLEL)
-        given: tuple[Any, ...] = (case, data, workers.executor, workers.count)
+        runs = runner(workers.executor, workers.count)
         if chosen.plan:
-            _finish_plan(folder, console, plan(*given))
+            _finish_plan(folder, console, expected(problem, runs))
         else:
-            _finish(folder, console, case, calibrate(*given))
+            _finish(folder, console, case, solve(problem, runs))
         if chosen.pictures:
-            for problem in draw_calibration(path):
-                console.print(f"note: {problem}", markup=False, soft_wrap=True)
-    except CaseError:  # before anything was computed
+            for missing in draw_calibration(path):
+                console.print(f"note: {missing}", markup=False, soft_wrap=True)
+    except CaseError:  # the results of a run do not have what was measured
         folder.abandon()
         raise
     except BaseException as error:
@@ -66,7 +66,7 @@ def _run_with(crew: Crew, chosen) -> int:
     return 0
 
 
-def _data(case: AnyCase, given: list[str]) -> dict[str, Path] | Path | None:
+def _data(given: list[str]) -> dict[str, Path] | Path | None:
     """Data files of the command line: ``FILE`` alone, or ``NAME=FILE`` each."""
     if len(given) == 1 and "=" not in given[0]:
         return Path(given[0])
@@ -90,10 +90,11 @@ def _finish(
     rows = rows_of(
         found.measurements,
         fit.predicted,
-        observed.deviations,
-        fit.jacobian,
+        found.deviations,
+        fit.jacobian * observed.deviations[:, None],
         found.normal,
         found.table.confidence,
+        fit.noise,
     )
     sample = None
     if found.posterior is not None:
@@ -119,9 +120,10 @@ def _finish_plan(folder: CalibrationFolder, console: Terminal, found: Planned) -
         found.measurements,
         found.predicted,
         found.deviations,
-        found.jacobian / found.deviations[:, None],
+        found.jacobian,
         found.design.complete.normal,
         found.table.confidence,
+        found.noise,
     )
     folder.finish(record, rows)
     _print_parameters(console, record)

@@ -9,6 +9,7 @@ import numpy as np
 from ...calibration.measurement import Measurement
 from ...calibration.readings import PLACES, known_quantities, reading
 from ...case import AnyCase
+from ...case.assembly.schema import AssemblyCase
 from ...case.studies.calibration import ObservationTable
 from ...case.values.csv_columns import Columns, column_names, read_columns
 from ...case.values.units import parse, registry, unit_of
@@ -105,8 +106,14 @@ def _measurement(
 ) -> Measurement:
     quantity = own.quantity or column if column == "value" else column
     at = {key: _in_si(columns, key, unit) for key, unit in _SI.items() if key in columns.values}
+    if not at.keys().isdisjoint(PLACES) and "time" not in at and (found := at.keys() - set(PLACES)):
+        raise ValueError(
+            f"{columns.name}: places are measured at a time or at the end; found {min(found)}"
+        )
+    if isinstance(case, AssemblyCase) and own.contact not in (None, *case.sliding):
+        raise ValueError(f"contact: must be one of: {', '.join(case.sliding)}")
     count = len(columns.lines)
-    given = reading(quantity, at, count, own.contact, _densities(case))
+    given = reading(quantity, at, count, own.contact, _densities(case, own.contact))
     values = np.full(count, np.nan)
     if column in columns.values:
         values = _in_si(columns, column, given.quantity.si)
@@ -135,6 +142,11 @@ def _deviations(
             found = np.full(len(values), given)
         else:
             assert own.deviation.relative is not None
+            if unit == "K":
+                raise ValueError(
+                    f"deviation: a percentage of {column} depends on the temperature scale; "
+                    "give it in K"
+                )
             found = own.deviation.relative * np.abs(values)
     if (found <= 0.0).any():
         raise ValueError(f"{columns.name}: the {_DEVIATION} of {column} must be greater than 0")
@@ -151,6 +163,8 @@ def _in_si(columns: Columns, key: str, unit: str, difference: bool = False) -> n
 
 def _number(value: str | float, unit: str, difference: bool) -> float:
     if not isinstance(value, str):
+        if not registry().Quantity(1.0, unit_of(unit)).dimensionless:
+            raise ValueError(f"found the plain number {value:g}; must be in {unit}")
         return value
     given = parse(value, f"1 {unit}")
     if not given.is_compatible_with(unit_of(unit)):
@@ -162,11 +176,28 @@ def _number(value: str | float, unit: str, difference: bool) -> float:
     return float(found)
 
 
-def _densities(case: AnyCase) -> dict[int, float]:
-    """Densities of the bodies by number, where they have one [kg/m³]."""
-    found = {}
-    for number, body in enumerate(case.geometry.bodies, 1):
-        density = case.located_material(body)[1].density
-        if density is not None:
+def _densities(case: AnyCase, contact: str | None) -> dict[int, float]:
+    """Densities of both bodies of a contact, where they have one [kg/m³].
+
+    Without the name of a contact they are those of all contacts, as far as these agree.
+    """
+    found: dict[int, float] = {}
+    for number, bodies in enumerate(zip(*_pairs(case, contact), strict=True), 1):
+        densities = {case.located_material(body)[1].density for body in bodies}
+        density = densities.pop()
+        if density is not None and not densities:
             found[number] = density
     return found
+
+
+def _pairs(case: AnyCase, contact: str | None) -> list[tuple[str, ...]]:
+    """Bodies of each contact, or of one of them."""
+    if not isinstance(case, AssemblyCase):
+        return [tuple(case.geometry.bodies[:2])]
+    from ...simulation.from_case.assembly import ordered_faces
+
+    return [
+        tuple(map(case.geometry.body_of, ordered_faces(case, table)))
+        for name, table in case.sliding.items()
+        if contact in (None, name)
+    ]

@@ -20,7 +20,7 @@ def record_of(found: Calibration) -> dict[str, Any]:
         "chi2": fit.chi2,
         "degrees_of_freedom": fit.degrees_of_freedom,
         "reduced_chi2": fit.reduced_chi2,
-        "p_value": fit.p_value,
+        "p_value": None if found.estimated else fit.p_value,
         "converged": fit.converged,
         "message": fit.message,
         "evaluations": fit.evaluations,
@@ -44,7 +44,7 @@ def record_of(found: Calibration) -> dict[str, Any]:
         }
     return {
         **_parameters(found.table, found.normal, found.fit.values),
-        "at_bounds": list(fit.at_bounds),
+        "at_bounds": list(found.at_bounds),
         "identifiable": found.identifiability.identified,
         "singular_values": found.identifiability.singular_values.tolist(),
         "combinations": combinations,
@@ -109,12 +109,21 @@ def rows_of(
     measurements: tuple[Measurement, ...],
     predicted: np.ndarray,
     deviations: np.ndarray,
-    weighted_jacobian: np.ndarray,
+    jacobian: np.ndarray,
     normal: JointNormal,
     level: float,
+    noise: float,
 ) -> list[dict[str, Any]]:
-    """Rows of ``observations.csv``: measured and predicted values with their bands [SI]."""
-    band = linear_band(predicted, weighted_jacobian * deviations[:, None], normal, level)
+    """Rows of ``observations.csv``: measured and predicted values with their bands [SI].
+
+    Parameters
+    ----------
+    jacobian : ndarray, shape (n, p)
+        Derivatives of the predictions with respect to the internal coordinates.
+    noise : float
+        Relative noise of the derivatives.
+    """
+    band = linear_band(predicted, jacobian, normal, level, noise)
     along = dict.fromkeys(_header(name) for one in measurements for name in one.reading.at)
     rows, k = [], 0
     for one in measurements:

@@ -47,6 +47,8 @@ def calibrated_input(folder: Path, case: dict[str, Any]) -> StudyInput:
 
 
 def _input(content: dict[str, Any], case: dict[str, Any]) -> StudyInput:
+    if content.get("planned"):
+        raise ValueError("is that of a plan, not of a calibration")
     known: dict[str, dict[str, Any]] = content["parameters"]
     table = CalibrationTable(
         parameters={name: _table(one) for name, one in known.items()}, set=content.get("set", {})

@@ -11,6 +11,7 @@ import numpy as np
 from ...case.studies.scalars import Scalar
 from ...case.studies.study import InputTable
 from ...case.values.units import registry, unit_of
+from ...errors import CaseError
 from ...inference import (
     LogNormal,
     LogUniform,
@@ -74,19 +75,33 @@ class StudyInput:
 
 
 def input_column(name: str, unit: str, resolved: Any = None) -> InputColumn:
-    """Column of an input; its SI unit is that of the key in the resolved case, if it has one."""
+    """Column of an input; its SI unit is that of the key in the resolved case, if it has one.
+
+    Raises
+    ------
+    ValueError
+        If the units differ in their dimension.
+    """
     if not unit:
         return InputColumn(name, "", name)
     quantity, known = registry().Quantity, in_si(resolved)
     base = quantity(1.0, unit_of(unit)).to_base_units().units
     si = base if known is None else unit_of(known[1])
+    if not quantity(1.0, unit_of(unit)).is_compatible_with(si):
+        raise ValueError(f"{name}: found the unit {unit}; must be in {si:~C}")
     zero, one = (float(quantity(v, unit_of(unit)).to(si).magnitude) for v in (0.0, 1.0))
     spelled = f"{base:~C}" if known is None else known[1]
     return InputColumn(name, unit, f"{name}_{in_header(spelled)}", zero, one - zero)
 
 
 def inputs_of(tables: dict[str, InputTable], case: dict[str, Any]) -> list[StudyInput]:
-    """Inputs of the table ``study`` of a resolved case."""
+    """Inputs of the table ``study`` of a resolved case.
+
+    Raises
+    ------
+    CaseError
+        If a unit does not suit its key.
+    """
     return [_input(key, table, value_at(key, case)) for key, table in tables.items()]
 
 
@@ -94,7 +109,10 @@ def _input(key: str, table: InputTable, resolved: Any) -> StudyInput:
     def overrides(values: Sequence[float]) -> tuple[str, ...]:
         return (Scalar(float(values[0]), table.unit).override(key),)
 
-    column = input_column(key, table.unit, resolved)
+    try:
+        column = input_column(key, table.unit, resolved)
+    except ValueError as error:
+        raise CaseError(f"study.inputs.{error}") from None
     return StudyInput(key, (column,), distribution_of(table), overrides)
 
 

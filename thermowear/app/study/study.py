@@ -167,16 +167,17 @@ class StudyPlan:
                 '"contact.friction" = { distribution = "normal", mean = 0.25, deviation = 0.02 }, '
                 "or --calibration DIR"
             )
-        names = [column.name for one in inputs for column in one.columns]
-        twice = [name for name in names if names.count(name) > 1]
-        if twice:
-            raise CaseError(f"study.inputs.{twice[0]}: is a calibrated parameter, too")
         if indices and not table.indices:
             table = table.model_copy(update={"indices": True})
         if table.indices and len(inputs) < 2:
-            raise CaseError("--indices: Sobol indices need two inputs at least")
+            raise CaseError("study.indices: Sobol indices need two inputs at least")
+        design = study_design(inputs, table)
+        keys = [change.partition("=")[0] for change in design.overrides(0)]
+        twice = [key for key in keys if keys.count(key) > 1]
+        if twice:
+            raise CaseError(f"study.inputs.{twice[0]}: is a calibrated parameter or depends on one")
         kept = {key: own for key, own in plain.items() if key not in ("study", "calibrate")}
-        return cls(kept, table, study_design(inputs, table))
+        return cls(kept, table, design)
 
     def job(self, k: int) -> StudyJob:
         """Variant by its index; curves are kept of those of the sample."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
@@ -75,9 +76,11 @@ class ParameterTable(Section):
     def _check_prior(self, prior: PriorTable) -> None:
         try:
             mean = prior.value.in_unit_of(self.start)
-            prior.deviation.of(self.start)
+            deviation = prior.deviation.of(replace(self.start, number=mean))
         except ValueError as error:
             raise KeyFault("prior", f"{error}, the unit of start") from None
+        if not deviation > 0.0:
+            raise KeyFault("prior.deviation", "must be greater than 0; a percentage of 0 is 0")
         if self.scale == "log" and not mean > 0.0:
             raise KeyFault("prior.value", "must be greater than 0 on a logarithmic scale")
 
@@ -112,7 +115,7 @@ class PosteriorTable(Section):
     Attributes
     ----------
     walkers : int or None
-        Number of walkers, even; by default four for each parameter, at least 16.
+        Number of walkers, even, two for each parameter at least; by default four, at least 16.
     steps : int
         Steps of each walker.
     seed : int
@@ -175,6 +178,14 @@ class CalibrationTable(Section):
         twice = [key for key in keys if keys.count(key) > 1]
         if twice:
             raise KeyFault("set", f"{twice[0]} is set twice")
+        return self
+
+    @model_validator(mode="after")
+    def _enough_walkers(self):
+        walkers = None if self.posterior is None else self.posterior.walkers
+        least = 2 * len(self.parameters)
+        if walkers is not None and walkers < least:
+            raise KeyFault("posterior.walkers", f"must be {least} at least, two for each parameter")
         return self
 
     def overrides(self, values: dict[str, float]) -> tuple[str, ...]:

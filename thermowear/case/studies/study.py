@@ -70,6 +70,8 @@ class InputTable(Section):
             numbers = self.numbers
         except ValueError as error:
             raise KeyFault(_NEEDED[kind][0], str(error)) from None
+        if kind == "normal" and not numbers["deviation"] > 0.0:
+            raise KeyFault("deviation", "must be greater than 0; a percentage of 0 is 0")
         order = [numbers[key] for key in ("lower", "mode", "upper") if key in numbers]
         if any(not a <= b for a, b in pairwise(order)) or (
             len(order) > 1 and not order[0] < order[-1]
@@ -124,9 +126,3 @@ class StudyTable(Section):
     method: Literal["latin-hypercube", "sobol"] = "latin-hypercube"
     indices: Annotated[bool, Field(strict=True)] = False
     seed: Annotated[int, Field(ge=0, strict=True)] = 1
-
-    @model_validator(mode="after")
-    def _enough(self):
-        if self.indices and len(self.inputs) < 2:
-            raise KeyFault("indices", "needs two inputs at least")
-        return self

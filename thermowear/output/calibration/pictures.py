@@ -41,7 +41,7 @@ def draw_calibration(folder: Path) -> list[str]:
     for row in rows:
         groups.setdefault(row["observation"], []).append(row)
     observed = [_Group(label, members) for label, members in groups.items()]
-    _draw_fit(observed, folder / "fit.png")
+    _draw_fit(observed, record["confidence"], folder / "fit.png")
     _draw_residuals(observed, folder / "residuals.png")
     known = [k for k, one in enumerate(record["parameters"].values()) if _is_known(one)]
     if not known:
@@ -97,7 +97,7 @@ def _quantity(header: str, values: np.ndarray) -> Quantity:
     return from_key(header, found.label, unit)
 
 
-def _draw_fit(groups: list[_Group], path: Path) -> None:
+def _draw_fit(groups: list[_Group], level: float, path: Path) -> None:
     with panels(path, len(groups), 2, (4.6, 3.2)) as (_, axes):
         for axis, group in zip(axes.flat, groups, strict=False):
             x, order = group.abscissa, np.argsort(group.abscissa, kind="stable")
@@ -120,7 +120,7 @@ def _draw_fit(groups: list[_Group], path: Path) -> None:
             axes.flat[0].plot([], [], "o", color="C0", markersize=4)[0],
             axes.flat[0].plot([], [], color="C1")[0],
         ]
-        words = ["measured, ± standard deviation", "predicted, with 95 % band"]
+        words = ["measured, ± standard deviation", f"predicted, with {100 * level:g} % band"]
         axes.flat[0].figure.legend(handles, words, loc="outside lower center", ncols=2)
 
 

@@ -97,7 +97,7 @@ def _body(case: AssemblyCase, name: str) -> Body:
 
 
 def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> Interface:
-    geometry, faces = case.geometry, _ordered(case, table)
+    geometry, faces = case.geometry, ordered_faces(case, table)
     bodies = [geometry.body_of(face) for face in faces]
     one, other = (_motion(case.motions.get(body)) for body in bodies)
     into_1 = 0.5 if table.partition is None else table.partition
@@ -129,7 +129,7 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
     )
 
 
-def _ordered(case: AssemblyCase, table: AssemblyContactTable) -> tuple[str, str]:
+def ordered_faces(case: AssemblyCase, table: AssemblyContactTable) -> tuple[str, str]:
     """Faces of a contact; that of a body that turns about a centre is the second one.
 
     In a reciprocating analysis the first one passes over the second one, whichever moves.

@@ -7,7 +7,7 @@ import pytest
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Spatial
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.case.values.section import MODEL
 from thermowear.contact.faces.face import gather_faces
 from thermowear.contact.search.clipping import parts_opposite

@@ -8,7 +8,7 @@ import pytest
 import thermowear as tw
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import kinematics_of
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.contact.faces.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.geometry.geometries.annular_punch import AnnularPunch

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.geometry.geometries.balls.ball_in_socket import BallInSocket
 from thermowear.geometry.mesh.tagged import scaled_jacobians
 

@@ -10,7 +10,7 @@ from dolfinx.mesh import meshtags
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import kinematics_of
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.geometry.geometries.beam_on_foundation import BeamOnFoundation
 
 from .measure import ends, unnamed

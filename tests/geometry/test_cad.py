@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.case.values.section import MODEL
 from thermowear.errors import CaseError
 from thermowear.geometry.from_cad import meshing_process

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.geometry.geometries.brakes.disk_brake import DiskBrake
 
 from .measure import ends, unnamed

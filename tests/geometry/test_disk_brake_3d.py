@@ -12,7 +12,7 @@ from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.even_paths import EvenPaths
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.spaces import lagrange_spaces
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.contact.faces.face import gather_face
 from thermowear.contact.search.pairing import pair
 from thermowear.errors import CaseError

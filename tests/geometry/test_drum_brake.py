@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 
 from .measure import edges
 from .sound import fault

@@ -9,7 +9,7 @@ import tomli_w
 
 import thermowear as tw
 from thermowear.app.cli import main
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.errors import CaseError, CaseNote
 from thermowear.geometry.geometries.mesh_file import MeshFile
 from thermowear.geometry.geometries.on_block import CylinderOnBlock

@@ -11,7 +11,7 @@ from dolfinx import fem
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import Spatial
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.case.values.pressing import Pressing
 from thermowear.contact.faces.face import gather_face
 from thermowear.contact.search.pairing import pair

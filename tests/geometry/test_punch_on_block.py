@@ -8,7 +8,7 @@ from scipy.integrate import quad
 
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.kinematics import kinematics_of
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.case.values.pressing import Pressing
 from thermowear.contact.faces.face import gather_face
 from thermowear.contact.search.pairing import pair

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.geometry.geometries.rectangular_punch import RectangularPunch
 
 from ..simulation.space import PUNCH

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.geometry.geometries.arcs.shaft_in_bush import ShaftInBush
 from thermowear.geometry.geometries.arcs.tube_in_support import TubeInSupport
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.case.values.section import KeyFault
 from thermowear.geometry.geometries.arcs.shoes_in_drum import ShoesInDrum
 from thermowear.geometry.geometries.stack import Stack

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.case.values.section import MODEL
 from thermowear.errors import CaseError
 from thermowear.geometry.geometries.mesh_file import MeshFile

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.errors import CaseError
 from thermowear.geometry.geometries.strip_between import (
     StripBetweenCylinders,

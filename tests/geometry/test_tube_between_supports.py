@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.case.values.section import KeyFault
 from thermowear.geometry.geometries.arcs.tube_between_supports import TubeBetweenSupports
 from thermowear.geometry.geometries.arcs.tube_in_support import TubeInSupport

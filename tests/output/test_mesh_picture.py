@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from thermowear.app.cli import main
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.geometry.geometries.solids.cad_file import CadFile
 from thermowear.geometry.mesh.outside import outside
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.geometry.geometries.on_block import CylinderOnBlock
 from thermowear.geometry.mesh.tagged import TaggedMesh
 

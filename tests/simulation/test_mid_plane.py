@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.case.tables.schema import MeshTable
+from thermowear.case.tables.mesh import MeshTable
 from thermowear.geometry.geometries.brakes.disk_brake import DiskSector
 from thermowear.geometry.mesh.tagged import compact
 from thermowear.geometry.meshing.cells import (

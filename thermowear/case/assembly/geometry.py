@@ -131,7 +131,7 @@ class AssemblyGeometry(Section):
 
         Parameters
         ----------
-        mesh : thermowear.case.tables.schema.MeshTable
+        mesh : thermowear.case.tables.mesh.MeshTable
 
         Returns
         -------

@@ -14,8 +14,8 @@ from ..tables.analyses import Fretting, Initial, Reciprocating, Stability, Stead
 from ..tables.conditions import HeatTable
 from ..tables.contact import InterfaceTable
 from ..tables.materials import Properties, cell_sets, located_material
+from ..tables.mesh import MeshTable, check_size
 from ..tables.probes import ProbeTable
-from ..tables.schema import MeshTable, check_size
 from ..tables.tabulated import TimeHistory
 from ..tables.wear import WearTable
 from ..values.section import Section

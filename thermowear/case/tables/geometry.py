@@ -255,7 +255,7 @@ class Geometry(Section):
 
         Parameters
         ----------
-        mesh : thermowear.case.tables.schema.MeshTable
+        mesh : thermowear.case.tables.mesh.MeshTable
         zone : tuple of float, optional
             Contact zone as a range of x; element ends lie at both ends of it unless it is the whole
             face.

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from ...errors import note
 from ..any_case import AnyCase
 from ..tables.materials import part_named
-from ..tables.wear_rate import RateTable
+from ..tables.wear import RateTable
 from ..values.section import Fault
 
 

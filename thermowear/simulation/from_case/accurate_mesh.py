@@ -9,7 +9,7 @@ from mpi4py import MPI
 import numpy as np
 
 from ...case import AnyCase
-from ...case.tables.schema import MeshTable
+from ...case.tables.mesh import MeshTable
 from ...errors import CaseError, ComputationError
 from ...results import Result
 from ...timer import Phases

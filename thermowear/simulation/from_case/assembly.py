@@ -10,7 +10,7 @@ from ...case.assembly.geometry import AssemblyGeometry
 from ...case.assembly.schema import AssemblyCase
 from ...case.assembly.tables import AssemblyContactTable, AssemblyHolderTable, BodyMotionTable
 from ...case.tables.analyses import Fretting, Reciprocating
-from ...case.tables.schema import MeshTable
+from ...case.tables.mesh import MeshTable
 from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh
 from ...laws.distribution import IN_PLACE, Distribution

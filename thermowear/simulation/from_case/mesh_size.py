@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from ...case.tables.schema import MOST_ELEMENTS
+from ...case.tables.mesh import MOST_ELEMENTS
 
 _HIGHEST = 10
 _GRADINGS = (0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 1.0)

@@ -13,8 +13,9 @@ from ...case.tables.conditions import AxisTable
 from ...case.tables.geometry import Geometry
 from ...case.tables.laws import PressureConductanceTable, TabulatedConductanceTable, law_of
 from ...case.tables.materials import Properties
+from ...case.tables.mesh import MeshTable
 from ...case.tables.probes import ProbeTable
-from ...case.tables.schema import Case, MeshTable
+from ...case.tables.schema import Case
 from ...case.tables.tabulated import (
     ExpansionTable,
     FactorHistory,

@@ -8,8 +8,7 @@ from ...case.assembly.geometry import AssemblyGeometry
 from ...case.tables.contact import InterfaceTable
 from ...case.tables.geometry import Geometry
 from ...case.tables.materials import part_named
-from ...case.tables.wear import BodyWearTable
-from ...case.tables.wear_rate import RateTable
+from ...case.tables.wear import BodyWearTable, RateTable
 from ...laws.distribution import IN_PLACE, Distribution
 from ...laws.layered_wear import LayeredWear
 from ...laws.power_wear import PowerWear

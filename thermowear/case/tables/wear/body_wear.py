@@ -8,8 +8,8 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import ConfigDict, Field, model_validator
 
-from ..values.regions import RegionOfSpace
-from ..values.section import KeyFault, Section, number_or
+from ...values.regions import RegionOfSpace
+from ...values.section import KeyFault, Section, number_or
 from .layers import LayersTable
 from .wear_rate import RateTable
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from pydantic import model_serializer, model_validator
 
-from ..values.section import KeyFault, Section
-from ..values.units import Length
-from .laws import RateOfWear
-from .tabulated import must_match
+from ...values.section import KeyFault, Section
+from ...values.units import Length
+from ..laws import RateOfWear
+from ..tabulated import must_match
 from .wear_rate import (
     OF_POWER,
     Coefficient,

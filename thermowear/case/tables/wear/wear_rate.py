@@ -10,12 +10,12 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, PlainSerializer, model_serializer, model_validator
 
-from ...laws.interfaces import Law
-from ..values.json_schema import WrittenAs, text_such_as
-from ..values.section import KeyFault, Number, Section
-from ..values.units import parse, registry
-from .laws import RateOfWear, wear_rate_of
-from .tabulated import MultiplierTables
+from ....laws.interfaces import Law
+from ...values.json_schema import WrittenAs, text_such_as
+from ...values.section import KeyFault, Number, Section
+from ...values.units import parse, registry
+from ..laws import RateOfWear, wear_rate_of
+from ..tabulated import MultiplierTables
 
 _EXAMPLE = "2e-7 1/MPa"
 OF_POWER = ("coefficient", "per", "pressure_exponent", "velocity_exponent")

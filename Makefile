@@ -5,7 +5,7 @@ RUFF = $(CACHE)/ruff-0.14/bin/ruff
 WHOLE = THERMOWEAR_WITH=studies $(ENV)
 PYTEST = OMP_NUM_THREADS=1 $(WHOLE) python3 -m pytest
 
-.PHONY: help demo gallery test verify test-next lint types image meshes clean
+.PHONY: help demo gallery docs test verify test-next lint types image meshes clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 12
@@ -18,6 +18,10 @@ demo: ## compute the demo cases into results/
 
 gallery: ## demos/README.md: what each demo case shows, with pictures
 	$(ENV) python3 demos/gallery.py
+
+docs: ## the site in docs/_build/html; warnings are errors
+	THERMOWEAR_WITH=docs $(ENV) python3 -m sphinx -W --keep-going -q -d docs/_build/doctrees docs docs/_build/html
+	@echo docs/_build/html/index.html
 
 test: ## the tests but the slow ones
 	$(PYTEST) -n 2 -m "not slow"
@@ -43,7 +47,7 @@ meshes: ## make the meshes in meshes/ anew
 	$(ENV) python3 meshes/regenerate.py
 
 clean: ## remove results and tool caches; the environment stays
-	rm -rf results demos/out build .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf results demos/out docs/_build build .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # ruff is not in Debian; pinned, as a new one may ask for new things

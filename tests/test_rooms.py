@@ -229,7 +229,7 @@ def test_files_named_in_the_documents_exist():
     """requirement: a path in CONTRIBUTING, README and docs is the end of one of a source file."""
     top = ROOT.parent
     sources = [f"/{path.relative_to(top).as_posix()}" for path in top.rglob("*.py")]
-    for document in (top / "CONTRIBUTING.md", top / "README.md", *top.glob("docs/*.md")):
+    for document in (top / "CONTRIBUTING.md", top / "README.md", *top.rglob("docs/**/*.md")):
         named = re.findall(r"`([\w/]+\.py)`", document.read_text(encoding="utf-8"))
         missing = [n for n in named if not any(s.endswith(f"/{n}") for s in sources)]
         assert not missing, document.name

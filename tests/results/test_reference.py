@@ -1,4 +1,4 @@
-"""Reference of tables, columns and keys in docs/results.md, made from their declarations.
+"""Reference of tables, columns and keys in docs/reference/results.md, made from their declarations.
 
 scripts/env python3 -m tests.results.test_reference      # writes it anew
 """
@@ -16,7 +16,7 @@ from thermowear.results.quantity import from_key, key, split_key
 from thermowear.results.summary_keys import GROUPS, OTHER, group_of, of_key
 
 ROOT = Path(__file__).parents[2]
-PAGE = ROOT / "docs" / "results.md"
+PAGE = ROOT / "docs" / "reference" / "results.md"
 DATA = ROOT / "tests" / "output" / "data" / "0.1.0"
 START, END = "<!-- made by tests/results/test_reference.py -->\n", "<!-- end -->\n"
 

@@ -114,7 +114,7 @@ class Reading:
                 self._check_finite(values)
                 return _between(x, values, wanted, along)
         raise CaseError(
-            f"{self.name}: no table of this analysis has it by {along}; see docs/results.md"
+            f"{self.name}: no table of this analysis has it by {along}; see docs/reference/results.md"
         )
 
     def _at_places(self, result: Result) -> np.ndarray:
@@ -130,7 +130,7 @@ class Reading:
 
     def _column(self, fields: InterfaceFields) -> np.ndarray:
         if self.name not in table_of(fields).columns:
-            raise CaseError(f"{self.name}: is no quantity of interface.csv; see docs/results.md")
+            raise CaseError(f"{self.name}: is no quantity of interface.csv; see docs/reference/results.md")
         values = getattr(fields, self.name)
         self._check_finite(values)
         return values

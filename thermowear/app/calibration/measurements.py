@@ -88,7 +88,7 @@ def _known_units(
     known |= {} if at_places else _MASS | dict.fromkeys(probes_of(case), "degC")
     if own.quantity is not None:
         if own.quantity not in known:
-            raise ValueError(f"quantity: {own.quantity} is unknown; see docs/results.md")
+            raise ValueError(f"quantity: {own.quantity} is unknown; see docs/reference/results.md")
         known["value"] = known[own.quantity]
     known |= {f"{name}_{_DEVIATION}": unit for name, unit in known.items()}
     if len(columns) == 1 and columns[0] in known:

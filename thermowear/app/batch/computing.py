@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import chain
 from typing import Any, Protocol
@@ -180,10 +181,13 @@ class _Distribution:
     def _interrupt(self) -> None:
         """End the executor, and report what running calls return."""
         getattr(self._executor, "interrupt", lambda: None)()
-        self._executor.shutdown(wait=True, cancel_futures=True)
+        for future in self._running:
+            future.cancel()
+        self._executor.shutdown(wait=True)  # that of Dask cannot cancel
         for future, (_, tasks) in self._running.items():
-            if not future.cancelled() and (done := _result(future, tasks)) is not None:
-                _report(done, self._received)
+            with suppress(KeyboardInterrupt):  # of a call that returned nothing; others did
+                if not future.cancelled() and (done := _result(future, tasks)) is not None:
+                    _report(done, self._received)
 
 
 def _report(done: _Done, received: Callable[[Any], None]) -> _Done:
@@ -194,16 +198,15 @@ def _report(done: _Done, received: Callable[[Any], None]) -> _Done:
 
 def _result(future: Future, tasks: list) -> _Done | None:
     """Outcomes of a chunk; None if its worker died and its tasks are to be computed one by one."""
-    error = future.exception()
+    error = CancelledError("cancelled") if future.cancelled() else future.exception()
     if error is None:
         return future.result()
-    if isinstance(error, KeyboardInterrupt):
-        raise error
     if not _is_loss(error):
         raise error
     if len(tasks) > 1:
         return None
-    return _Done([Lost(tasks[0], str(error))], 0.0)
+    own = isinstance(error, ComputationError)
+    return _Done([Lost(tasks[0], str(error) if own else f"its process died: {error}")], 0.0)
 
 
 def _is_loss(error: BaseException) -> bool:

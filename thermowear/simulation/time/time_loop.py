@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import partial, reduce
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from ...errors import ComputationError
 from ...model.analyses import TimedAnalysis
 from ..interface.sdirk import (
+    InterfaceState,
     TrialStep,
     WearProblem,
     advance_with_error,
@@ -179,14 +181,14 @@ def moments(
     times = times_to_hit(settings, problem)
     targets = [time for time in times if time > last.time]
     require_valid(settings, times)
-    advanced, still = _repeated if settings.steps else _next, 0
+    steps, still = _Steps(problem, settings, steady, sizes), 0
     while not is_over(settings, last):
         if last.number == settings.max_steps and not settings.steps:
             raise ComputationError(
                 f"{settings.type}: {settings.max_steps} steps were not enough "
                 f"(analysis.max_steps), the run stands at {last.time:g} s"
             )
-        last = advanced(problem, settings, steady, sizes, targets[0], last)
+        last = steps.next(targets[0], last)
         if last.time == targets[0]:
             targets.pop(0)
         yield last
@@ -207,61 +209,66 @@ def is_over(settings: TimedAnalysis, last: Moment) -> bool:
     return steady or last.time >= max((settings.end_time, *settings.output_times))
 
 
-def _repeated(
-    problem: WearProblem,
-    settings: TimedAnalysis,
-    steady,
-    sizes: StepSizes,
-    target: float,
-    last: Moment,
-) -> Moment:
-    """Given step, without error control, before or up to a target time [s]."""
-    time = settings.steps[last.number]
-    step = sizes.nominal(time - last.time, last.begin, target)
-    try:
-        state = advance_without_error(problem, last.state, last.time, step)
-    except ComputationError as failure:
-        raise ComputationError(
-            f"{settings.type}: the given step from {last.time:g} to {time:g} s failed ({failure})"
-        ) from None
-    return Moment(
-        time=time,
-        step=step,
-        state=state,
-        error=math.nan,
-        is_output=time in settings.output_times,
-        distance=problem.distance(state, steady),
-        number=last.number + 1,
-        begin=target if time == target else last.begin,
-        wanted=step,
-    )
+@dataclass(frozen=True)
+class _Steps:
+    """Steps of a running-in towards a target time that must be hit exactly [s]."""
 
+    problem: WearProblem
+    settings: TimedAnalysis
+    steady: object
+    sizes: StepSizes
 
-def _next(
-    problem: WearProblem,
-    settings: TimedAnalysis,
-    steady,
-    sizes: StepSizes,
-    target: float,
-    last: Moment,
-) -> Moment:
-    """Step towards a target time that must be hit exactly [s]."""
-    size = partial(sizes.at_most, time=last.time, begin=last.begin, end=target)
-    smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
-    trial, step, following = _accept(problem, last, size, sizes.rounding, smallest, settings)
-    hits = ends(step, target - last.time)
-    time = target if hits else last.time + step
-    return Moment(
-        time=time,
-        step=step,
-        state=trial.state,
-        error=trial.error,
-        is_output=hits and target in settings.output_times,
-        distance=problem.distance(trial.state, steady),
-        number=last.number + 1,
-        begin=target if hits else last.begin,
-        wanted=max(following, last.wanted) if hits else following,
-    )
+    def next(self, target: float, last: Moment) -> Moment:
+        """Given step, or one by error control."""
+        return (self._given if self.settings.steps else self._controlled)(target, last)
+
+    def _given(self, target: float, last: Moment) -> Moment:
+        """Given step, without error control, before or up to the target time."""
+        time = self.settings.steps[last.number]
+        step = self.sizes.nominal(time - last.time, last.begin, target)
+        try:
+            state = advance_without_error(self.problem, last.state, last.time, step)
+        except ComputationError as failure:
+            raise ComputationError(
+                f"{self.settings.type}: the given step from {last.time:g} to {time:g} s failed "
+                f"({failure})"
+            ) from None
+        return self._moment(last, state, time, step, math.nan, target, wanted=step)
+
+    def _controlled(self, target: float, last: Moment) -> Moment:
+        """Step whose error is within the tolerance."""
+        size = partial(self.sizes.at_most, time=last.time, begin=last.begin, end=target)
+        smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
+        trial, step, following = _accept(
+            self.problem, last, size, self.sizes.rounding, smallest, self.settings
+        )
+        hits = ends(step, target - last.time)
+        time = target if hits else last.time + step
+        wanted = max(following, last.wanted) if hits else following
+        return self._moment(last, trial.state, time, step, trial.error, target, wanted)
+
+    def _moment(
+        self,
+        last: Moment,
+        state: InterfaceState,
+        time: float,
+        step: float,
+        error: float,
+        target: float,
+        wanted: float,
+    ) -> Moment:
+        """Accepted state after the last one."""
+        return Moment(
+            time=time,
+            step=step,
+            state=state,
+            error=error,
+            is_output=time in self.settings.output_times,
+            distance=self.problem.distance(state, self.steady),
+            number=last.number + 1,
+            begin=target if time == target else last.begin,
+            wanted=wanted,
+        )
 
 
 def _accept(

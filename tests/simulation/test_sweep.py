@@ -175,6 +175,28 @@ def test_those_that_share_more_are_neighbours():
     assert grouped(cases) == [[0, 2, 1, 3], [4, 6, 5, 7]]
 
 
+def test_equal_stiffnesses_are_neighbours(factors):
+    """
+    requirement: groups that differ in expansion follow each other, whatever the order: each
+    stiffness is factorised once.
+    """
+    cases = [
+        block(
+            RUNNING_IN,
+            f'bodies.block.expansion="{expansion} 1/K"',
+            f'bodies.block.young_modulus="{modulus} GPa"',
+        )
+        for expansion in ("1e-5", "2e-5")
+        for modulus in (100, 200)
+    ]
+    order = grouped(cases)
+    assert order == [[0], [2], [1], [3]]
+    series = Series()
+    for (number,) in order:
+        run_in(series, cases[number])
+    assert len(factors) == 2 * 4
+
+
 def test_speed_needs_new_conduction_where_the_disk_carries_heat():
     """
     requirement: motion enters the conduction only where heat.advection is "resolved".

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import time
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from threading import Lock
 
@@ -57,6 +58,24 @@ def test_every_task_once():
     with ThreadPoolExecutor(3) as executor:
         compute(groups, Recorded(), found.append, executor, 3)
     assert sorted(found) == sorted(task for group in groups for task in group)
+
+
+def test_threads_compute_one_at_a_time():
+    """requirement: threads of one process, as of a worker of Dask, take turns with its series."""
+    busy, overlaps = Lock(), []
+
+    def work(series, task):
+        overlaps.append(not busy.acquire(blocking=False))
+        time.sleep(0.01)
+        busy.release()
+        return id(series)
+
+    found = []
+    with ThreadPoolExecutor(4) as executor:
+        compute([[k, k + 1] for k in range(8)], work, found.append, executor, 4)
+    assert not any(overlaps)
+    assert len(found) == 16
+    assert len(set(found)) == 1
 
 
 def test_a_crash_costs_one_task():

@@ -8,6 +8,7 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future
 from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import chain
+from threading import Lock
 from typing import Any, Protocol
 
 from ...errors import ComputationError
@@ -218,21 +219,38 @@ def _is_loss(error: BaseException) -> bool:
 
 _SERIES: list = []
 """Series of a worker process, which keeps the last set-up results for the chunks to come."""
+_ALONE = Lock()
+"""Held by the thread that computes: neither the series nor PETSc serve several."""
 
 
 def compute_chunk(tasks: list, work: BatchWork, series=None) -> _Done:
-    """Compute tasks one after the other, in this process, by default with the series it keeps."""
+    """Compute tasks one after the other, in this process, by default with the series it keeps.
+
+    Chunks that use the latter wait for each other, where a process has several threads.
+    """
+    if series is not None:
+        return _computed(tasks, work, lambda: series)
+    with _ALONE:
+        return _computed(tasks, work, _kept_series)
+
+
+def _computed(tasks: list, work: BatchWork, series: Callable[[], Any]) -> _Done:
     began, outcomes = time.perf_counter(), []
     try:
-        if series is None:
-            series = _SERIES[0] if _SERIES else new_series(alone=True)
-            _SERIES[:] = [series]
+        own = series()
         for task in tasks:
-            outcomes.append(work(series, task))
+            outcomes.append(work(own, task))
     except KeyboardInterrupt as stop:
         outcomes += [stop.outcome] if isinstance(stop, Stopped) else []
         return _Done(outcomes, time.perf_counter() - began, interrupted=True)
     return _Done(outcomes, time.perf_counter() - began)
+
+
+def _kept_series():
+    """Series that this process keeps."""
+    if not _SERIES:
+        _SERIES.append(new_series(alone=True))
+    return _SERIES[0]
 
 
 def new_series(alone: bool = False):

@@ -20,7 +20,7 @@ _BLOCK_SIZE = 2_000_000
 _TOLERANCE = 1e-6
 """Tolerance of the bounding-box search, relative to the size of a cell."""
 _BULGE = 0.3
-"""The same for curved cells, whose sides bulge beyond the box of their nodes."""
+"""Tolerance for curved cells, whose sides bulge beyond the box of their nodes."""
 
 
 class CellValues(NamedTuple):

@@ -233,74 +233,65 @@ class _Steps:
                 f"{self.settings.type}: the given step from {last.time:g} to {time:g} s failed "
                 f"({failure})"
             ) from None
-        return self._moment(last, state, time, step, math.nan, target, wanted=step)
+        own = {"time": time, "step": step, "error": math.nan, "wanted": step}
+        return self._moment(last, target, state, **own)
 
     def _controlled(self, target: float, last: Moment) -> Moment:
         """Step whose error is within the tolerance."""
         size = partial(self.sizes.at_most, time=last.time, begin=last.begin, end=target)
         smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
-        trial, step, following = _accept(
-            self.problem, last, size, self.sizes.rounding, smallest, self.settings
-        )
+        trial, step, following = self._accept(last, size, smallest)
         hits = ends(step, target - last.time)
         time = target if hits else last.time + step
         wanted = max(following, last.wanted) if hits else following
-        return self._moment(last, trial.state, time, step, trial.error, target, wanted)
+        own = {"time": time, "step": step, "error": trial.error, "wanted": wanted}
+        return self._moment(last, target, trial.state, **own)
 
-    def _moment(
-        self,
-        last: Moment,
-        state: InterfaceState,
-        time: float,
-        step: float,
-        error: float,
-        target: float,
-        wanted: float,
-    ) -> Moment:
-        """Accepted state after the last one."""
+    def _moment(self, last: Moment, target: float, state: InterfaceState, **own: float) -> Moment:
+        """Accepted state after the last one, with its own time, step, error and next step."""
         return Moment(
-            time=time,
-            step=step,
             state=state,
-            error=error,
-            is_output=time in self.settings.output_times,
+            is_output=own["time"] in self.settings.output_times,
             distance=self.problem.distance(state, self.steady),
             number=last.number + 1,
-            begin=target if time == target else last.begin,
-            wanted=wanted,
+            begin=target if own["time"] == target else last.begin,
+            **own,
         )
 
+    def _accept(self, last: Moment, size, smallest: float) -> tuple[TrialStep, float, float]:
+        """Repeat a step with smaller sizes until its error is within the tolerance.
 
-def _accept(
-    problem, last: Moment, size, rounding: float, smallest: float, settings
-) -> tuple[TrialStep, float, float]:
-    """Repeat a step with smaller sizes until its error is within the tolerance.
+        Step sizes that must end behind an event are increased to do so once rounded.
 
-    Step sizes that must end behind an event are increased by ``rounding`` to do so once rounded.
+        With pointwise contact, an error that does not decrease in a far smaller step is a jump: a
+        point begins to press suddenly. That step, which ends right behind the event, is accepted.
 
-    With pointwise contact, an error that does not decrease in a far smaller step is a jump: a point
-    begins to press suddenly. That step, which ends right behind the event, is accepted.
-
-    Returns the step with its size, and the size of the next one as proposed by error control [s].
-    """
-    trouble, step = "", size(last.wanted)
-    # errors decrease steadily while the transient after a point begins to press decays
-    former = None if last.state.pointwise is None else (last.step, last.error)
-    tried: list[tuple[float, float]] = []
-    while step > smallest:
-        try:
-            trial = advance_with_error(problem, last.state, last.time, step)
-        except ComputationError as failure:
-            step, trouble = size(step / 4), f" ({failure})"
-            continue
-        error = trial.error
-        proposed = next_step(step, error, settings.tolerance, former)
-        if error <= settings.tolerance:
-            return trial, step, min(proposed, rounding * trial.following)
-        jumps = any(step <= _FAR_SMALLER * tried_size and error > e / 2 for tried_size, e in tried)
-        if jumps and trial.state.pointwise is not None:
-            return trial, step, step / _FAR_SMALLER
-        tried.append((step, error))
-        located = rounding * trial.reached if trial.reached < 0.9 * step else 0.0
-        step = size(min(max(proposed, located), 0.9 * step))
-    raise ComputationError(f"{settings.type}: no step is small enough at {last.time:g} s{trouble}")
+        Returns the step with its size, and the size of the next one as proposed by error control
+        [s].
+        """
+        tolerance, rounding = self.settings.tolerance, self.sizes.rounding
+        trouble, step = "", size(last.wanted)
+        # errors decrease steadily while the transient after a point begins to press decays
+        former = None if last.state.pointwise is None else (last.step, last.error)
+        tried: list[tuple[float, float]] = []
+        while step > smallest:
+            try:
+                trial = advance_with_error(self.problem, last.state, last.time, step)
+            except ComputationError as failure:
+                step, trouble = size(step / 4), f" ({failure})"
+                continue
+            error = trial.error
+            proposed = next_step(step, error, tolerance, former)
+            if error <= tolerance:
+                return trial, step, min(proposed, rounding * trial.following)
+            jumps = any(
+                step <= _FAR_SMALLER * tried_size and error > e / 2 for tried_size, e in tried
+            )
+            if jumps and trial.state.pointwise is not None:
+                return trial, step, step / _FAR_SMALLER
+            tried.append((step, error))
+            located = rounding * trial.reached if trial.reached < 0.9 * step else 0.0
+            step = size(min(max(proposed, located), 0.9 * step))
+        raise ComputationError(
+            f"{self.settings.type}: no step is small enough at {last.time:g} s{trouble}"
+        )

@@ -14,7 +14,7 @@ from thermowear.laws.wave_modes import (
 from thermowear.laws.waves import WaveEquations, WaveHeat, WornBody
 
 
-def equations(gains=(1.0,), turning=0.0, wear=0.0, frames=(0.0,)):
+def equations(gains=(1.0,), turning=0.0, wear=0.0, frames=(0.0,), worn_turning=0.0):
     """Modes with ``1 + V w/s = V g/(1 + s + i V ω)``, one for each gain g."""
     n = len(gains)
     identity = np.eye(n)
@@ -27,7 +27,7 @@ def equations(gains=(1.0,), turning=0.0, wear=0.0, frames=(0.0,)):
             stored=sp.eye(n, format="csc"),
             turning=np.full(n, turning),
         ),
-        worn=(WornBody(wear * identity, 0.0),) if wear else (),
+        worn=(WornBody(wear * identity, worn_turning),) if wear else (),
         slowest=1.0,
         frames=frames,
     )
@@ -51,6 +51,37 @@ def test_wave_that_is_carried_along():
     assert mode.factor == pytest.approx(1.0, rel=1e-9)
     assert mode.rate == pytest.approx(-3j, rel=1e-9)
     assert [growing(moving, factor) for factor in (0.98, 1.02)] == [0, 1]
+
+
+def test_negative_gains_do_not_grow():
+    """requirement: the critical speed is that of the largest gain, not of its magnitude."""
+    mode = first_critical(equations((1.0, -5.0)), 0.3)
+    assert mode.factor == pytest.approx(1.0, rel=1e-10)
+
+
+def test_temperatures_and_opening_of_heat():
+    """
+    requirement: (K + (s + i V ω) M) θ = V Q and B θ of full matrices, also where K and M have
+    different patterns, with zeros among their entries.
+    """
+    random, n = np.random.default_rng(4), 12
+    coupled = sp.random(n, n, 0.2, random_state=random)
+    conducted = (coupled + coupled.T + 5 * sp.eye(n)).tocoo()
+    rows, columns = random.integers(0, n, (2, 8))  # of zeros
+    rows, columns = np.append(conducted.row, rows), np.append(conducted.col, columns)
+    values, diagonal = np.append(conducted.data, np.zeros(8)), np.append(np.arange(n), 0)
+    heat = WaveHeat(
+        opening=random.random((2, n)),
+        heated=random.random((n, 3)),
+        conducted=sp.csc_matrix((values, (rows, columns)), (n, n)),
+        stored=sp.csc_matrix((np.append(random.random(n), 0.0), (diagonal, diagonal)), (n, n)),
+        turning=random.random(n),
+    )
+    factor, rate = 1.3, 0.3 + 0.7j
+    moved = (rate + 1j * factor * heat.turning[:, None]) * heat.stored.toarray()
+    expected = np.linalg.solve(heat.conducted.toarray() + moved, factor * heat.heated)
+    np.testing.assert_allclose(heat.temperatures(factor, rate), expected, rtol=1e-11)
+    np.testing.assert_allclose(heat.opened(factor, rate), heat.opening @ expected, rtol=1e-11)
 
 
 def test_number_of_growing_waves():
@@ -87,3 +118,15 @@ def test_wear_makes_waves_swing(wear):
     assert mode.factor == pytest.approx(1 / (1 - wear), rel=1e-8)
     assert mode.rate.imag**2 == pytest.approx(wear / (1 - wear), rel=1e-7)
     assert with_wear(worn.without_wear, first_critical(worn)).factor == pytest.approx(1.0)
+
+
+def test_a_body_that_carries_heat_and_wear_along():
+    """requirement: waves at rest on the moving body, seen as s - i V ω from the reference body."""
+    wear = 0.02
+    rest = equations(wear=wear)
+    plain = first_critical(rest.without_wear, 0.3)
+    moving = equations(turning=3.0, wear=wear, frames=(0.0, 3.0), worn_turning=3.0)
+    for factor in (1.2, 2.0):
+        known = at_speed(rest, with_wear(rest, plain), factor)
+        gain, _ = moving.gains(factor, known.rate - 3j * factor).like(known.shape)
+        assert gain == pytest.approx(1.0, abs=1e-9)

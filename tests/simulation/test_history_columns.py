@@ -49,6 +49,30 @@ def test_depths_are_those_of_the_faces(result):
     assert np.all(np.diff(depths) >= 0.0)
 
 
+def test_worn_volumes_are_those_of_the_summary(result):
+    """requirement: volumes since the start, also where meshes follow the wear."""
+    row, summary = result.history[-1], result.summary
+    found = row.wear_volume_1, row.wear_volume_2
+    expected = [summary[f"wear_volume_{body}_m3"] for body in (1, 2)]
+    assert found == pytest.approx(expected, rel=1e-9, abs=0.0)
+
+
+def test_worn_volume_is_that_of_the_friction_work():
+    """
+    requirement: k times the friction work for wear in proportion to the friction stress, to the
+    trapezoidal rule of the friction power, through several geometry updates.
+    """
+    path, overrides = CASES["geometry updates"]
+    found = tw.run(tw.load(path, overrides))
+    assert found.summary["geometry_updates"] > 1
+    time, power, volume = (
+        np.array([getattr(row, key) for row in found.history])
+        for key in ("time", "friction_power", "wear_volume_1")
+    )
+    work = np.trapezoid(power, time)
+    assert volume[-1] == pytest.approx(2e-13 * work, rel=1e-3)
+
+
 def test_friction_power_is_that_of_heat():
     """requirement: the same friction power in both tables."""
     path, overrides = CASES["in time"]

@@ -181,6 +181,45 @@ def test_fields_of_the_first_mode(found):
     assert fields.points[cell, point, 1] == pytest.approx(0.0, abs=1e-4)
 
 
+def face_values(fields, body, radii):
+    """Displacements (n, 3, 3) of a body at z = 0 and the next two points inside, and z (n, 3)."""
+    own = np.flatnonzero(fields.body == body)
+    points, displacement = (
+        fields.points[own].reshape(-1, 2),
+        fields.displacement[own].reshape(-1, 3),
+    )
+    found = []
+    for radius in radii:
+        line = np.flatnonzero(np.abs(points[:, 0] - radius) < 1e-9)
+        z, first = np.unique(np.abs(points[line, 1].round(10)), return_index=True)
+        found.append((displacement[line[first[:3]]], points[line[first[:3]], 1], z[0]))
+    displacements, places, nearest = zip(*found, strict=True)
+    assert max(nearest) == 0.0
+    return np.array(displacements), np.array(places)
+
+
+def test_the_first_mode_keeps_contact_without_shear(found):
+    """
+    requirement: both faces have the same normal displacement, real and imaginary part, and no shear
+    traction along the wave, ∂w/∂z + i (N/r) u = 0; its drift is that of the table.
+    """
+    first = found.hot_spots.first
+    (fields,) = first.blocks
+    on_pad = (np.abs(fields.points[..., 1]) < 1e-9) & (fields.body == 1)[:, None]
+    radii = np.unique(fields.points[on_pad][:, 0].round(9))[2:-2]
+    (pad, _), (disk, z) = (face_values(fields, body, radii) for body in (1, 2))
+    normal = disk[:, 0, 1]
+    for one, other in ((pad[:, 0, 1].real, normal.real), (pad[:, 0, 1].imag, normal.imag)):
+        np.testing.assert_allclose(one, other, rtol=0.0, atol=0.02 * np.abs(other).max())
+    steps = np.diff(disk[..., 2], axis=1) / np.diff(z, axis=1)
+    slope = steps[:, 0] + (steps[:, 0] - steps[:, 1]) * (z[:, 0] - z[:, 1]) / (z[:, 0] - z[:, 2])
+    expected = -1j * first.number / radii * normal
+    np.testing.assert_allclose(slope, expected, rtol=0.0, atol=0.02 * np.abs(expected).max())
+    drift = by_mode(found)[first.number, first.symmetry].drift
+    assert drift > 0.0
+    assert found.summary["first_hot_spots_drift_m_per_s"] == pytest.approx(drift, rel=1e-9)
+
+
 def test_ranks(tmp_path):
     """requirement: the same critical speeds on two ranks."""
     expected = hot_spots_on_ranks.computed_modes()

@@ -147,6 +147,8 @@ def test_the_volumes_are_those_of_the_laws():
     for number, mu in enumerate(friction.values(), start=1):
         power = rows["friction_power_W"][rows["contact"] == number]
         np.testing.assert_allclose(power, mu * FORCE * speed, rtol=1e-9)
+    (total,) = set(result.columns("history")["friction_power_W"].round(6))
+    assert total == pytest.approx(sum(friction.values()) * FORCE * speed, rel=1e-9)
     held = result.summary["holders"]
     assert abs(held["slide"]["guide_force_N"]) == pytest.approx((0.2 + 0.1) * FORCE, rel=1e-9)
 

@@ -1,10 +1,13 @@
 """Sizes of steps between times that are hit exactly."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 
-from thermowear.simulation.time.time_loop import AnySize, FewSizes, ends
+from thermowear.model.analyses import TransientAnalysis
+from thermowear.simulation.time import time_loop
+from thermowear.simulation.time.time_loop import AnySize, FewSizes, ends, moments, next_step
 
 
 def walk(sizes, times, wanted):
@@ -72,3 +75,56 @@ def test_any_size_leaves_no_tiny_step():
     assert sum(steps) == pytest.approx(1.0)
     assert min(steps) > 0.15
     assert max(steps) == 0.3
+
+
+@pytest.mark.parametrize("times", [(0.1, 1.0, 10.0), (1.0, 2.7182818, 4.0), (1.0, 6.0, 7.0, 20.0)])
+def test_given_steps_have_the_sizes_of_the_run(times, monkeypatch):
+    """
+    requirement: to the last bit, so that the operators of one size serve them; at the targets, the
+    states are outputs.
+    """
+    sizes, taken = walk(FewSizes(times), times, growing), []
+    stops, targets, time = [], list(times), 0.0
+    for size in sizes:
+        time = targets.pop(0) if ends(size, targets[0] - time) else time + size
+        stops.append(time)
+
+    def advance(problem, state, time, step):
+        taken.append(step)
+        return state
+
+    monkeypatch.setattr(time_loop, "advance_without_error", advance)
+    problem = SimpleNamespace(
+        start=lambda: None,
+        distance=lambda state, steady: math.nan,
+        first_step=lambda state: 1.0,
+        corners=lambda end: (),
+    )
+    settings = TransientAnalysis(
+        end_time=times[-1], output_times=times[:-1], steps=tuple(stops), tolerance=1e-3
+    )
+    found = list(moments(problem, settings, None, FewSizes(times)))[1:]
+    assert taken == sizes
+    assert [one.time for one in found] == stops
+    assert [one.time for one in found if one.is_output] == list(times[:-1])
+    assert len(set(sizes)) < len(sizes)
+
+
+def test_next_step_of_an_error_of_third_order():
+    """requirement: for an error c h³ the next step has 0.9³ of the tolerance, within 0.2 to 5."""
+    for step in (0.3, 1.0, 2.0):
+        following = next_step(step, 4.0 * step**3, 1.0)
+        assert 4.0 * following**3 == pytest.approx(0.9**3)
+    assert next_step(1.0, 1e9, 1.0) == 0.2
+    assert next_step(1.0, 1e-9, 1.0) == next_step(1.0, 0.0, 1.0) == 5.0
+
+
+def test_next_step_of_a_decaying_transient():
+    """
+    requirement: errors that grow by a slower power of the steps are extrapolated (Gustafsson);
+    steps are not reduced by that, nor are those that are too large.
+    """
+    former, step = (1.0, 0.1), (2.0, 0.1)  # twice the step, the same error
+    assert next_step(*step, 0.2, former) == pytest.approx(2.0 * next_step(*step, 0.2))
+    assert next_step(*step, 0.2, (1.0, 1e-9)) == next_step(*step, 0.2)
+    assert next_step(*step, 0.05, former) == next_step(*step, 0.05)

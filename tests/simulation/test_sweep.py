@@ -146,6 +146,29 @@ def test_expansion_needs_no_new_factor(factors):
     assert result.summary["shape_range_m"] != before.summary["shape_range_m"]
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        'bodies.block.expansion="2e-5 1/K"',
+        'bodies.block.expansion_factor={at=["20 degC", "60 degC"], factor=[1.0, 3.0]}',
+        None,
+    ],
+    ids=["expansion", "factor", "no factor"],
+)
+def test_expansions_that_depend_on_temperature(change):
+    """
+    requirement: the forces of temperature-dependent expansions are those of each case of a series.
+    """
+    table = '{at=["20 degC", "60 degC"], factor=[1.0, 2.0]}'
+    varying = f"bodies.block.expansion_factor={table}"
+    first, second = block(varying), block(*([varying, change] if change else []))
+    series = Series()
+    before = run_in(series, first)
+    result = run_in(series, second)
+    same(result, tw.run(second))
+    assert result.summary["shape_range_m"] != before.summary["shape_range_m"]
+
+
 def test_a_mesh_that_follows_the_contact_is_not_shared():
     """
     requirement: variants with meshes of their own are not mixed up.
@@ -173,6 +196,28 @@ def test_those_that_share_more_are_neighbours():
         for h in coolings
     ]
     assert grouped(cases) == [[0, 2, 1, 3], [4, 6, 5, 7]]
+
+
+def test_equal_stiffnesses_are_neighbours(factors):
+    """
+    requirement: groups that differ in expansion follow each other, whatever the order: each
+    stiffness is factorised once.
+    """
+    cases = [
+        block(
+            RUNNING_IN,
+            f'bodies.block.expansion="{expansion} 1/K"',
+            f'bodies.block.young_modulus="{modulus} GPa"',
+        )
+        for expansion in ("1e-5", "2e-5")
+        for modulus in (100, 200)
+    ]
+    order = grouped(cases)
+    assert order == [[0], [2], [1], [3]]
+    series = Series()
+    for (number,) in order:
+        run_in(series, cases[number])
+    assert len(factors) == 2 * 4
 
 
 def test_speed_needs_new_conduction_where_the_disk_carries_heat():

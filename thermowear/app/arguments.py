@@ -46,9 +46,16 @@ def parser() -> argparse.ArgumentParser:
     result.add_argument("--version", action="version", version=f"thermowear {__version__}")
     commands = result.add_subparsers(required=True, metavar="COMMAND", parser_class=_Parser)
 
-    run = _command(commands, "run", "compute a case")
-    _add_case(run)
-    _add_output(run, "DIR", help="default: results/<case>")
+    _add_runs(commands)
+    _add_case_commands(commands)
+    _add_folder_commands(commands)
+    _add_editor_commands(commands)
+    return result
+
+
+def _add_runs(commands) -> None:
+    """Commands that compute a case, or many variants of it, into a folder."""
+    run = _results(commands, "run", "compute a case", "default: results/<case>")
     existing = run.add_mutually_exclusive_group()
     _add_flag(existing, "--overwrite", "replace existing results")
     _add_flag(existing, "--resume", "continue the run that was stopped in DIR")
@@ -56,8 +63,8 @@ def parser() -> argparse.ArgumentParser:
     compared = "repeat the case one degree lower and higher, and print all three side by side"
     _add_flag(run, "--accuracy", compared)
 
-    sweep = _command(commands, "sweep", "compute all combinations of values of keys")
-    _add_case(sweep)
+    text = "compute all combinations of values of keys"
+    sweep = _results(commands, "sweep", text, "default: results/<case>-sweep")
     sweep.add_argument(
         "--over",
         metavar="KEY=V1,V2,...",
@@ -65,11 +72,12 @@ def parser() -> argparse.ArgumentParser:
         required=True,
         help="a key and its values, such as load.force='1 kN,2 kN'; can be repeated",
     )
-    _add_output(sweep, "DIR", help="default: results/<case>-sweep")
     _add_batch(sweep)
 
-    calibrate = _command(commands, "calibrate", "find parameters of a case from measured data")
-    _add_case(calibrate)
+    text = "find parameters of a case from measured data"
+    calibrate = _results(
+        commands, "calibrate", text, "default: results/<case>-calibration or -plan"
+    )
     calibrate.add_argument(
         "--data",
         metavar="[NAME=]FILE",
@@ -78,12 +86,11 @@ def parser() -> argparse.ArgumentParser:
         help="CSV file of an observation; can be repeated",
     )
     _add_flag(calibrate, "--plan", "how well measurements would determine the parameters")
-    _add_output(calibrate, "DIR", help="default: results/<case>-calibration")
     _add_flag(calibrate, "--overwrite", "replace existing results")
     _add_workers(calibrate)
 
-    study = _command(commands, "study", "propagate uncertain inputs, and rank their influence")
-    _add_case(study)
+    text = "propagate uncertain inputs, and rank their influence"
+    study = _results(commands, "study", text, "default: results/<case>-study")
     study.add_argument(
         "--calibration",
         metavar="DIR",
@@ -91,9 +98,11 @@ def parser() -> argparse.ArgumentParser:
         help="results of a calibration, whose parameters are uncertain inputs, too",
     )
     _add_flag(study, "--indices", "compute Sobol indices, too")
-    _add_output(study, "DIR", help="default: results/<case>-study")
     _add_batch(study)
 
+
+def _add_case_commands(commands) -> None:
+    """Commands on a case file."""
     _command(commands, "cases", "list the starter cases")
 
     init = _command(commands, "init", "write a starter case to edit")
@@ -120,6 +129,9 @@ def parser() -> argparse.ArgumentParser:
     shape.add_argument("--face", metavar="NAME", help="its contact face, of a body with several")
     _add_flag(shape, "--overwrite")
 
+
+def _add_folder_commands(commands) -> None:
+    """Commands on results, and verification."""
     verify = _command(commands, "verify", "verify against reference solutions")
     ids = verify.add_argument("ids", metavar="ID", nargs="*", help="default: all but the slow ones")
     _complete(ids, {"bash": "_thermowear_checks"})
@@ -137,13 +149,15 @@ def parser() -> argparse.ArgumentParser:
     report = _command(commands, "report", "write report.html of a results folder")
     _add_folder(report)
 
+
+def _add_editor_commands(commands) -> None:
+    """Commands for editors and shells."""
     schema = _command(commands, "schema", "write the JSON schema of case files, for editors")
     _add_output(schema, "FILE", help="default: standard output")
     _add_flag(schema, "--overwrite")
 
     completion = _command(commands, "completion", "print the completion of commands for a shell")
     completion.add_argument("shell", choices=("bash", "zsh", "tcsh"))
-    return result
 
 
 def _positive(text: str) -> int:
@@ -176,6 +190,14 @@ def _command(commands, name: str, text: str) -> argparse.ArgumentParser:
 def _complete(argument: argparse.Action, completion: dict[str, str]) -> None:
     """Let the shell complete an argument, see `shtab.complete`."""
     argument.complete = completion  # type: ignore[attr-defined]
+
+
+def _results(commands, name: str, text: str, default: str) -> argparse.ArgumentParser:
+    """Command that computes a case into a folder."""
+    command = _command(commands, name, text)
+    _add_case(command)
+    _add_output(command, "DIR", help=default)
+    return command
 
 
 def _add_flag(command, name: str, text: str | None = None) -> None:

@@ -12,6 +12,7 @@ from ..case import Case, as_plain
 from ..errors import CaseError, ComputationError, UnwritableError
 from ..output.checkpoint import CHECKPOINT
 from ..output.console import ConsoleProgress, Terminal, print_discretisations, print_summary
+from ..output.files import writing
 from ..output.folder import ResultsFolder
 from ..output.resuming import (
     ResumedFolder,
@@ -198,10 +199,8 @@ def _close(folder: ResultsFolder | None, status: str, message: str = "") -> None
 
 def _writing(action) -> None:
     """Run a writing action; an error of the disk becomes a failed computation."""
-    try:
+    with writing():
         action()
-    except OSError as error:
-        raise UnwritableError(f"results cannot be written: {error}") from None
 
 
 def _draw(path: Path, console: Terminal) -> None:

@@ -130,7 +130,9 @@ class Reading:
 
     def _column(self, fields: InterfaceFields) -> np.ndarray:
         if self.name not in table_of(fields).columns:
-            raise CaseError(f"{self.name}: is no quantity of interface.csv; see docs/reference/results.md")
+            raise CaseError(
+                f"{self.name}: is no quantity of interface.csv; see docs/reference/results.md"
+            )
         values = getattr(fields, self.name)
         self._check_finite(values)
         return values

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..errors import UnwritableError
 from ..results import TABLES
 
 PICTURES = {
@@ -173,6 +174,22 @@ def write_text(path: Path, text: str) -> None:
     """Write a text file, atomically."""
     with atomic_write(path) as draft:
         draft.write_text(text, "utf-8")
+
+
+@contextmanager
+def writing() -> Iterator[None]:
+    """Turn an error of the disk into a failed computation.
+
+    Raises
+    ------
+    UnwritableError
+    """
+    try:
+        yield
+    except BrokenPipeError:  # of the console
+        raise
+    except OSError as error:
+        raise UnwritableError(f"results cannot be written: {error}") from None
 
 
 def final_name(path: Path) -> str:

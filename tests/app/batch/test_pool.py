@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from concurrent.futures import wait
+from concurrent.futures import Future, wait
 
 import pytest
 
@@ -76,6 +76,21 @@ def test_a_process_that_dies_takes_one_call_with_it():
     assert [f.result()[0] for f in futures if f.exception() is None] == [1, 4, 9]
     with pytest.raises(ComputationError, match="exit code -9"):
         futures[1].result()
+
+
+def test_a_process_that_dies_before_its_call():
+    """requirement: its call fails as one that the process was computing, and no other error."""
+    worker = pools._Worker()
+    worker.process.kill()
+    worker.process.join()
+    call = pools._Call(Future(), square, (1,), {})
+    worker.begin(call)
+    if not worker.idle:  # the call still found room in the pipe
+        worker.receive()
+    assert worker.idle
+    with pytest.raises(ComputationError, match="exit code -9"):
+        call.future.result(timeout=10)
+    worker.end()
 
 
 def test_errors_and_results_that_cannot_be_sent():

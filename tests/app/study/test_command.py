@@ -87,6 +87,26 @@ def lever(samples: int) -> str:
     return written(tables | {"study": {"inputs": {"contact.friction": wide}, "samples": samples}})
 
 
+def test_damaged_tables(capsys):
+    """requirement: a file that was cut, or lost its rows, is named in one line."""
+    assert main(["study", written(ring(BOTH, samples=4, indices=True)), *ALONE]) == 0
+    folder = Path("results/ring-study")
+    for name in ("study.csv", "quantiles.csv", "tornado.csv", "sobol.csv", "bands_interface.csv"):
+        whole = (folder / name).read_bytes()
+        cut = whole[: whole.rindex(b",")]
+        for damaged in (cut, b"\xff", whole.splitlines()[0] if name.startswith("bands") else cut):
+            (folder / name).write_bytes(damaged)
+            capsys.readouterr()
+            assert main(["plot", str(folder)]) == 1
+            (line,) = capsys.readouterr().err.splitlines()
+            assert line.startswith("error: ")
+        (folder / name).write_bytes(whole)
+    (folder / "bands_mine.csv").write_text("a\n1\n", encoding="utf-8")
+    assert main(["plot", str(folder)]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "bands_mine.csv: is no table of bands" in line
+
+
 def test_failed_variants_are_rows(capsys):
     """requirement: failed variants are told and counted, and cost nothing else."""
     assert main(["study", lever(16), *ALONE, "--no-pictures", "-o", "s"]) == 0

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, wait
+from contextlib import suppress
 from dataclasses import dataclass, field
 from itertools import chain
+from threading import Lock
 from typing import Any, Protocol
 
 from ...errors import ComputationError
@@ -180,10 +182,13 @@ class _Distribution:
     def _interrupt(self) -> None:
         """End the executor, and report what running calls return."""
         getattr(self._executor, "interrupt", lambda: None)()
-        self._executor.shutdown(wait=True, cancel_futures=True)
+        for future in self._running:
+            future.cancel()
+        self._executor.shutdown(wait=True)  # that of Dask cannot cancel
         for future, (_, tasks) in self._running.items():
-            if not future.cancelled() and (done := _result(future, tasks)) is not None:
-                _report(done, self._received)
+            with suppress(KeyboardInterrupt):  # of a call that returned nothing; others did
+                if not future.cancelled() and (done := _result(future, tasks)) is not None:
+                    _report(done, self._received)
 
 
 def _report(done: _Done, received: Callable[[Any], None]) -> _Done:
@@ -194,16 +199,15 @@ def _report(done: _Done, received: Callable[[Any], None]) -> _Done:
 
 def _result(future: Future, tasks: list) -> _Done | None:
     """Outcomes of a chunk; None if its worker died and its tasks are to be computed one by one."""
-    error = future.exception()
+    error = CancelledError("cancelled") if future.cancelled() else future.exception()
     if error is None:
         return future.result()
-    if isinstance(error, KeyboardInterrupt):
-        raise error
     if not _is_loss(error):
         raise error
     if len(tasks) > 1:
         return None
-    return _Done([Lost(tasks[0], str(error))], 0.0)
+    own = isinstance(error, ComputationError)
+    return _Done([Lost(tasks[0], str(error) if own else f"its process died: {error}")], 0.0)
 
 
 def _is_loss(error: BaseException) -> bool:
@@ -215,21 +219,38 @@ def _is_loss(error: BaseException) -> bool:
 
 _SERIES: list = []
 """Series of a worker process, which keeps the last set-up results for the chunks to come."""
+_ALONE = Lock()
+"""Held by the thread that computes: neither the series nor PETSc serve several."""
 
 
 def compute_chunk(tasks: list, work: BatchWork, series=None) -> _Done:
-    """Compute tasks one after the other, in this process, by default with the series it keeps."""
+    """Compute tasks one after the other, in this process, by default with the series it keeps.
+
+    Chunks that use the latter wait for each other, where a process has several threads.
+    """
+    if series is not None:
+        return _computed(tasks, work, lambda: series)
+    with _ALONE:
+        return _computed(tasks, work, _kept_series)
+
+
+def _computed(tasks: list, work: BatchWork, series: Callable[[], Any]) -> _Done:
     began, outcomes = time.perf_counter(), []
     try:
-        if series is None:
-            series = _SERIES[0] if _SERIES else new_series(alone=True)
-            _SERIES[:] = [series]
+        own = series()
         for task in tasks:
-            outcomes.append(work(series, task))
+            outcomes.append(work(own, task))
     except KeyboardInterrupt as stop:
         outcomes += [stop.outcome] if isinstance(stop, Stopped) else []
         return _Done(outcomes, time.perf_counter() - began, interrupted=True)
     return _Done(outcomes, time.perf_counter() - began)
+
+
+def _kept_series():
+    """Series that this process keeps."""
+    if not _SERIES:
+        _SERIES.append(new_series(alone=True))
+    return _SERIES[0]
 
 
 def new_series(alone: bool = False):

@@ -129,7 +129,7 @@ def _ranks() -> Iterator[Workers]:
 
 @contextmanager
 def _dask(scheduler: str | None, count: int) -> Iterator[Workers]:
-    """Workers of a scheduler of Dask, or of this machine; one thread each."""
+    """Workers of a scheduler of Dask, or of this machine; each computes one case at a time."""
     try:
         from distributed import Client, LocalCluster
     except ImportError:
@@ -148,4 +148,4 @@ def _dask(scheduler: str | None, count: int) -> Iterator[Workers]:
         except (OSError, TimeoutError) as error:
             raise CaseError(f"--scheduler {scheduler}: no workers there: {error}") from None
         executor = stack.enter_context(client.get_executor())
-        yield Workers(executor, sum(client.nthreads().values()))
+        yield Workers(executor, len(client.nthreads()))

@@ -146,6 +146,8 @@ class _Worker:
         self._call = call
         try:
             self.pipe.send((call.function, call.arguments, call.keywords))
+        except OSError:  # the process has just died
+            self.receive()
         except Exception as error:
             self._finish(None, error)
 

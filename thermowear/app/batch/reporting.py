@@ -12,6 +12,7 @@ from typing import Any
 
 from ...errors import CaseError, ComputationError
 from ...output.console import Terminal
+from ...output.files import writing
 from ...output.variants.folder import VariantsFolder
 
 
@@ -82,7 +83,8 @@ class BatchReport:
         finally:
             self._folder.close(status, message, time.perf_counter() - self._began)
             if any(each == "done" for each in self._folder.ended.values()):
-                conclude()
+                with writing():
+                    conclude()
             self.say(f"results in {self._folder.path}")
 
 

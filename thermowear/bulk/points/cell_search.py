@@ -19,6 +19,8 @@ _BLOCK_SIZE = 2_000_000
 """Largest number of point-cell pairs searched at once."""
 _TOLERANCE = 1e-6
 """Tolerance of the bounding-box search, relative to the size of a cell."""
+_BULGE = 0.3
+"""Tolerance for curved cells, whose sides bulge beyond the box of their nodes."""
 
 
 class CellValues(NamedTuple):
@@ -42,7 +44,9 @@ class CellSearch:
     def __init__(self, mesh, degree: int):
         self._element = reference_element(mesh, degree)
         kind = self._element.cell_type
-        self._geometry = equispaced(kind.name, coordinate_element(mesh).degree)
+        order = coordinate_element(mesh).degree
+        self._geometry = equispaced(kind.name, order)
+        self._room = _TOLERANCE if order == 1 else _BULGE
         self._middle = np.asarray(basix.geometry(kind)).mean(axis=0)
         self._simplex = kind in (basix.CellType.triangle, basix.CellType.tetrahedron)
 
@@ -77,10 +81,33 @@ class CellSearch:
         values = tabulated(self._element, inside[best])[0]
         return np.einsum("nk,nk->n", values, cells.values[cell[best]])
 
-    def near(self, nodes: np.ndarray, point: np.ndarray) -> np.ndarray:
-        """Cells with nodes (n_cells, n_nodes, gdim) whose bounding boxes contain a point."""
-        low, high = _boxes(nodes)
-        return np.flatnonzero(np.all((point >= low) & (point <= high), axis=1))
+    def near(
+        self, nodes: np.ndarray, point: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Cells that may contain a point.
+
+        Parameters
+        ----------
+        nodes : ndarray, shape (n_cells, n_nodes, gdim)
+            Geometry nodes of the cells.
+        point : ndarray, shape (gdim,)
+
+        Returns
+        -------
+        cells : ndarray of int, shape (n,)
+        places : ndarray, shape (n, gdim)
+            Nearest reference coordinates in each cell.
+        distances : ndarray, shape (n,)
+            Distance of the point from there, in reference coordinates or relative to the size of
+            the cell, whichever is larger.
+        """
+        low, high = _boxes(nodes, self._room)
+        cells = np.flatnonzero(np.all((point >= low) & (point <= high), axis=1))
+        nodes = nodes[cells]
+        places, distances = self.places(nodes, np.tile(point, (len(cells), 1)))
+        reached = np.einsum("nk,nki->ni", tabulated(self._geometry, places)[0], nodes)
+        off = np.linalg.norm(reached - point, axis=1) / np.ptp(nodes, axis=1).max(axis=1)
+        return cells, places, np.maximum(distances, off)
 
     def places(self, nodes: np.ndarray, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Nearest reference coordinates in one cell for each point, and the distances to them."""
@@ -107,8 +134,8 @@ class CellSearch:
         return inside, np.linalg.norm(place - inside, axis=1)
 
 
-def _boxes(nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _boxes(nodes: np.ndarray, larger: float = _TOLERANCE) -> tuple[np.ndarray, np.ndarray]:
     """Corners of the bounding boxes of cells, slightly larger, shape (n_cells, gdim) each [m]."""
     low, high = nodes.min(axis=1), nodes.max(axis=1)
-    room = _TOLERANCE * (high - low).max(axis=1, keepdims=True)
+    room = larger * (high - low).max(axis=1, keepdims=True)
     return low - room, high + room

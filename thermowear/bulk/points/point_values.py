@@ -18,7 +18,7 @@ from ..spaces import Spaces
 from .cell_search import CellSearch
 
 _INSIDE = 1e-6
-"""Largest distance of a point from its cell, in reference coordinates."""
+"""Largest distance of a point from its cell, see `CellSearch.near`."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class CellPoint:
     Attributes
     ----------
     distance : float
-        Distance from the cell in reference coordinates; points inside have zero.
+        Distance from the cell, see `CellSearch.near`; zero inside, to rounding.
     body, cell : int
         Index of the body in `Bodies.each`, and local index of the cell.
     place : ndarray, shape (gdim,)
@@ -85,13 +85,10 @@ def _in_body(
     body: BodyMesh, index: int, point: np.ndarray, owners: Mapping[str, str]
 ) -> dict[str, CellPoint]:
     """Cells of one body that contain a point and that this rank owns, by owner."""
-    cells = np.arange(body.n_cells)
     dofmap, mesh = geometry_dofmap(body.mesh), body.mesh
     nodes = mesh.geometry.x[dofmap[: body.n_cells]][..., : mesh.geometry.dim]
     search, found = CellSearch(mesh, degree=1), dict[str, CellPoint]()
-    near = search.near(nodes, point)
-    places, distances = search.places(nodes[near], np.tile(point, (len(near), 1)))
-    for cell, place, distance in zip(cells[near], places, distances, strict=True):
+    for cell, place, distance in zip(*search.near(nodes, point), strict=True):
         owner = owners[body.names[body.parts_of_cells(np.array([cell]))[0]]]
         closer = owner not in found or distance < found[owner].distance
         if distance <= _INSIDE and closer:

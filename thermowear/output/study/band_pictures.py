@@ -29,10 +29,19 @@ class _Curves:
 
 
 def draw_bands(record: StudyRecord, path: Path) -> list[str]:
-    """Draw ``bands.png``; returns reasons for what is missing."""
+    """Draw ``bands.png``; returns reasons for what is missing.
+
+    Raises
+    ------
+    ValueError
+        If a file is no table of bands.
+    """
     found, notes = [], []
     for file in sorted(record.folder.glob(f"{BANDS}*.csv")):
-        curves = _read(record, file)
+        try:
+            curves = _read(record, file)
+        except KeyError as missing:
+            raise ValueError(f"{file}: is no table of bands, as {missing} is unknown") from None
         if curves is None:
             notes.append(f"{file.name}: not drawn, as its points are not on a line")
         elif curves.groups:

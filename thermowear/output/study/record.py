@@ -119,16 +119,12 @@ def read_study(folder: Path) -> StudyRecord:
     settings = (read_object(folder / "run.json") or {}).get("study")
     if not isinstance(settings, dict):
         raise ValueError(f"{folder}: contains no study")
+    tables = (read_cells(folder / name) for name in (QUANTILES, "study.csv", TORNADO, SOBOL))
+    quantiles, variants, swings, indices = tables
     try:
-        quantiles = read_cells(folder / QUANTILES)
-        rows = [
-            row
-            for row in read_cells(folder / "study.csv")
-            if row["status"] == "done" and row["part"] in SAMPLE
-        ]
+        rows = [row for row in variants if row["status"] == "done" and row["part"] in SAMPLE]
         outputs = [row["output"] for row in quantiles]
         sample = {name: np.array([float(row[name]) for row in rows]) for name in outputs}
-        swings, indices = read_cells(folder / TORNADO), read_cells(folder / SOBOL)
     except (KeyError, ValueError) as error:
         raise ValueError(f"{folder}: study.csv and {QUANTILES} are not of one study") from error
     return StudyRecord(folder, settings, sample, quantiles, indices, swings, model_of(folder))

@@ -70,14 +70,34 @@ def write_bands(folder: Path, found: Mapping[str, Mapping[str, np.ndarray]]) -> 
 
 
 def read_cells(path: Path) -> list[dict[str, str]]:
-    """Rows of a table of a study as text; empty if it was not written."""
+    """Rows of a table of a study as text; empty if it was not written.
+
+    Raises
+    ------
+    ValueError
+        If rows are incomplete, or the file is no text.
+    """
     if not path.is_file():
         return []
     with path.open(encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
+        rows = list(csv.DictReader(file))
+    if any(None in row or None in row.values() for row in rows):
+        raise ValueError(f"{path}: has rows that are not as long as its header")
+    return rows
 
 
 def read_columns(path: Path) -> dict[str, np.ndarray]:
-    """Columns of a table of numbers by header."""
+    """Columns of a table of numbers by header.
+
+    Raises
+    ------
+    ValueError
+        If the file is no such table.
+    """
     rows = read_cells(path)
-    return {name: np.array([float(row[name]) for row in rows]) for name in (rows or [{}])[0]}
+    if not rows:
+        raise ValueError(f"{path}: has no rows")
+    try:
+        return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    except ValueError:
+        raise ValueError(f"{path}: is not a table of numbers with headers") from None

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from ...errors import CaseError
-from ..files import read_object, write_text
+from ..files import is_report, read_object, write_text, writing
 from ..folder import Lock, finite, run_ended, run_started, write_json
 from ..tables import write_csv
 
@@ -97,9 +97,9 @@ class VariantsFolder:
             elif any(path.iterdir()):
                 self._clear(overwrite)
             self._write_run()
+            self._write_table()
         except OSError as error:
             raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
-        self._write_table()
 
     @classmethod
     def is_of_kind(cls, folder: Path) -> bool:
@@ -129,20 +129,32 @@ class VariantsFolder:
         seconds: float,
         **more: Any,
     ) -> None:
-        """Record the end of a variant, by its number from 1, with more entries of the journal."""
+        """Record the end of a variant, by its number from 1, with more entries of the journal.
+
+        Raises
+        ------
+        UnwritableError
+        """
         numbers = numbers | {"seconds": round(seconds, 4)}
         self._ends[number] = VariantEnd(status, numbers)
         line = {"variant": number, "status": status, "numbers": numbers, **more}
-        with (self.path / JOURNAL).open("a", encoding="utf-8") as file:
-            file.write(f"{json.dumps(finite(line))}\n")
-        if time.monotonic() > self._next_writing:
-            self._write_table()
+        with writing():
+            with (self.path / JOURNAL).open("a", encoding="utf-8") as file:
+                file.write(f"{json.dumps(finite(line))}\n")
+            if time.monotonic() > self._next_writing:
+                self._write_table()
 
     def close(self, status: str, message: str, seconds: float) -> None:
-        """Record how the command ended: ``done``, ``failed`` or ``interrupted``."""
-        self._write_table()
+        """Record how the command ended: ``done``, ``failed`` or ``interrupted``.
+
+        Raises
+        ------
+        UnwritableError
+        """
         self._run |= run_ended(status, message) | {"seconds": round(seconds, 4)}
-        self._write_run()
+        with writing():
+            self._write_table()
+            self._write_run()
         self._lock.release()
 
     def restored(self, line: dict[str, Any]) -> None:
@@ -157,14 +169,24 @@ class VariantsFolder:
                 f"{self.path}; start anew with --overwrite, or use another folder"
             )
         journal = self.path / JOURNAL
-        text = journal.read_text(encoding="utf-8") if journal.is_file() else ""
-        whole = text[: text.rfind("\n") + 1]
-        for line in map(json.loads, whole.splitlines()):
-            if _is_final(line["status"]):
-                numbers = {k: float("nan") if v is None else v for k, v in line["numbers"].items()}
-                self._ends[line["variant"]] = VariantEnd(line["status"], numbers)
-                self.restored(line)
-        write_text(journal, whole)
+        text = journal.read_bytes() if journal.is_file() else b""
+        whole = text[: text.rfind(b"\n") + 1]  # the last line may not have been written to its end
+        for number, line in enumerate(whole.splitlines(), 1):
+            try:
+                self._take_over(json.loads(line))
+            except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+                raise CaseError(
+                    f"--resume: {journal}, line {number}: is damaged; remove this line, and its "
+                    "variant is computed again"
+                ) from None
+        write_text(journal, whole.decode("utf-8"))
+
+    def _take_over(self, line: dict[str, Any]) -> None:
+        """Take over a line of the journal, unless its variant is to be computed again."""
+        if _is_final(line["status"]):
+            numbers = {k: float("nan") if v is None else v for k, v in line["numbers"].items()}
+            self._ends[line["variant"]] = VariantEnd(line["status"], numbers)
+            self.restored(line)
 
     def _clear(self, overwrite: bool) -> None:
         if not overwrite:
@@ -172,7 +194,8 @@ class VariantsFolder:
                 f"-o {self.path}: exists and is not empty; use --overwrite or another folder"
             )
         names = (f"{self.KIND}.csv", JOURNAL, "run.json", *self.FILES)
-        ours = [entry for name in names for entry in self.path.glob(name)]
+        found = [entry for name in names for entry in self.path.glob(name)]
+        ours = [entry for entry in found if entry.suffix != ".html" or is_report(entry)]
         if not self.is_of_kind(self.path) and ours:
             raise CaseError(
                 f"-o {self.path}: contains {ours[0].name} but is not a folder of a {self.KIND}; "

@@ -56,17 +56,20 @@ class Series:
 def groups(models: Iterable[Model]) -> list[list[int]]:
     """Group numbers of models by equal elastic bodies, ordered within by equal thermal set-up.
 
-    Groups share no costly set-up results, and may be computed in parallel.
+    Groups may be computed in parallel. They share no costly set-up results, but for neighbours that
+    differ in thermal expansion only: these share the factors of stiffness and conduction.
     """
     shared: _Groups = {}
     for number, model in enumerate(models):
         made_from = inputs(model)
         alone = model.discretisation.positioning
-        heated = _of(shared, () if alone else made_from.elasticity, {}, number if alone else "")
+        stiff = _of(shared, () if alone else made_from.stiffness, {}, number if alone else "")
+        heated = _of(stiff, made_from.elasticity, {})
         _of(heated, made_from.conduction, []).append(number)
     return [
         [number for _, numbers in _each(heated) for number in numbers]
-        for _, heated in _each(shared)
+        for _, stiff in _each(shared)
+        for _, heated in _each(stiff)
     ]
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from functools import partial, reduce
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from ...errors import ComputationError
 from ...model.analyses import TimedAnalysis
 from ..interface.sdirk import (
+    InterfaceState,
     TrialStep,
     WearProblem,
     advance_with_error,
@@ -179,14 +181,14 @@ def moments(
     times = times_to_hit(settings, problem)
     targets = [time for time in times if time > last.time]
     require_valid(settings, times)
-    advanced, still = _repeated if settings.steps else _next, 0
+    steps, still = _Steps(problem, settings, steady, sizes), 0
     while not is_over(settings, last):
         if last.number == settings.max_steps and not settings.steps:
             raise ComputationError(
                 f"{settings.type}: {settings.max_steps} steps were not enough "
                 f"(analysis.max_steps), the run stands at {last.time:g} s"
             )
-        last = advanced(problem, settings, steady, sizes, targets[0], last)
+        last = steps.next(targets[0], last)
         if last.time == targets[0]:
             targets.pop(0)
         yield last
@@ -207,93 +209,89 @@ def is_over(settings: TimedAnalysis, last: Moment) -> bool:
     return steady or last.time >= max((settings.end_time, *settings.output_times))
 
 
-def _repeated(
-    problem: WearProblem,
-    settings: TimedAnalysis,
-    steady,
-    sizes: StepSizes,
-    target: float,
-    last: Moment,
-) -> Moment:
-    """Given step, without error control, before or up to a target time [s]."""
-    time = settings.steps[last.number]
-    step = sizes.nominal(time - last.time, last.begin, target)
-    try:
-        state = advance_without_error(problem, last.state, last.time, step)
-    except ComputationError as failure:
-        raise ComputationError(
-            f"{settings.type}: the given step from {last.time:g} to {time:g} s failed ({failure})"
-        ) from None
-    return Moment(
-        time=time,
-        step=step,
-        state=state,
-        error=math.nan,
-        is_output=time in settings.output_times,
-        distance=problem.distance(state, steady),
-        number=last.number + 1,
-        begin=target if time == target else last.begin,
-        wanted=step,
-    )
+@dataclass(frozen=True)
+class _Steps:
+    """Steps of a running-in towards a target time that must be hit exactly [s]."""
 
+    problem: WearProblem
+    settings: TimedAnalysis
+    steady: object
+    sizes: StepSizes
 
-def _next(
-    problem: WearProblem,
-    settings: TimedAnalysis,
-    steady,
-    sizes: StepSizes,
-    target: float,
-    last: Moment,
-) -> Moment:
-    """Step towards a target time that must be hit exactly [s]."""
-    size = partial(sizes.at_most, time=last.time, begin=last.begin, end=target)
-    smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
-    trial, step, following = _accept(problem, last, size, sizes.rounding, smallest, settings)
-    hits = ends(step, target - last.time)
-    time = target if hits else last.time + step
-    return Moment(
-        time=time,
-        step=step,
-        state=trial.state,
-        error=trial.error,
-        is_output=hits and target in settings.output_times,
-        distance=problem.distance(trial.state, steady),
-        number=last.number + 1,
-        begin=target if hits else last.begin,
-        wanted=max(following, last.wanted) if hits else following,
-    )
+    def next(self, target: float, last: Moment) -> Moment:
+        """Given step, or one by error control."""
+        return (self._given if self.settings.steps else self._controlled)(target, last)
 
-
-def _accept(
-    problem, last: Moment, size, rounding: float, smallest: float, settings
-) -> tuple[TrialStep, float, float]:
-    """Repeat a step with smaller sizes until its error is within the tolerance.
-
-    Step sizes that must end behind an event are increased by ``rounding`` to do so once rounded.
-
-    With pointwise contact, an error that does not decrease in a far smaller step is a jump: a point
-    begins to press suddenly. That step, which ends right behind the event, is accepted.
-
-    Returns the step with its size, and the size of the next one as proposed by error control [s].
-    """
-    trouble, step = "", size(last.wanted)
-    # errors decrease steadily while the transient after a point begins to press decays
-    former = None if last.state.pointwise is None else (last.step, last.error)
-    tried: list[tuple[float, float]] = []
-    while step > smallest:
+    def _given(self, target: float, last: Moment) -> Moment:
+        """Given step, without error control, before or up to the target time."""
+        time = self.settings.steps[last.number]
+        step = self.sizes.nominal(time - last.time, last.begin, target)
         try:
-            trial = advance_with_error(problem, last.state, last.time, step)
+            state = advance_without_error(self.problem, last.state, last.time, step)
         except ComputationError as failure:
-            step, trouble = size(step / 4), f" ({failure})"
-            continue
-        error = trial.error
-        proposed = next_step(step, error, settings.tolerance, former)
-        if error <= settings.tolerance:
-            return trial, step, min(proposed, rounding * trial.following)
-        jumps = any(step <= _FAR_SMALLER * tried_size and error > e / 2 for tried_size, e in tried)
-        if jumps and trial.state.pointwise is not None:
-            return trial, step, step / _FAR_SMALLER
-        tried.append((step, error))
-        located = rounding * trial.reached if trial.reached < 0.9 * step else 0.0
-        step = size(min(max(proposed, located), 0.9 * step))
-    raise ComputationError(f"{settings.type}: no step is small enough at {last.time:g} s{trouble}")
+            raise ComputationError(
+                f"{self.settings.type}: the given step from {last.time:g} to {time:g} s failed "
+                f"({failure})"
+            ) from None
+        own = {"time": time, "step": step, "error": math.nan, "wanted": step}
+        return self._moment(last, target, state, **own)
+
+    def _controlled(self, target: float, last: Moment) -> Moment:
+        """Step whose error is within the tolerance."""
+        size = partial(self.sizes.at_most, time=last.time, begin=last.begin, end=target)
+        smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
+        trial, step, following = self._accept(last, size, smallest)
+        hits = ends(step, target - last.time)
+        time = target if hits else last.time + step
+        wanted = max(following, last.wanted) if hits else following
+        own = {"time": time, "step": step, "error": trial.error, "wanted": wanted}
+        return self._moment(last, target, trial.state, **own)
+
+    def _moment(self, last: Moment, target: float, state: InterfaceState, **own: float) -> Moment:
+        """Accepted state after the last one, with its own time, step, error and next step."""
+        return Moment(
+            state=state,
+            is_output=own["time"] in self.settings.output_times,
+            distance=self.problem.distance(state, self.steady),
+            number=last.number + 1,
+            begin=target if own["time"] == target else last.begin,
+            **own,
+        )
+
+    def _accept(self, last: Moment, size, smallest: float) -> tuple[TrialStep, float, float]:
+        """Repeat a step with smaller sizes until its error is within the tolerance.
+
+        Step sizes that must end behind an event are increased to do so once rounded.
+
+        With pointwise contact, an error that does not decrease in a far smaller step is a jump: a
+        point begins to press suddenly. That step, which ends right behind the event, is accepted.
+
+        Returns the step with its size, and the size of the next one as proposed by error control
+        [s].
+        """
+        tolerance, rounding = self.settings.tolerance, self.sizes.rounding
+        trouble, step = "", size(last.wanted)
+        # errors decrease steadily while the transient after a point begins to press decays
+        former = None if last.state.pointwise is None else (last.step, last.error)
+        tried: list[tuple[float, float]] = []
+        while step > smallest:
+            try:
+                trial = advance_with_error(self.problem, last.state, last.time, step)
+            except ComputationError as failure:
+                step, trouble = size(step / 4), f" ({failure})"
+                continue
+            error = trial.error
+            proposed = next_step(step, error, tolerance, former)
+            if error <= tolerance:
+                return trial, step, min(proposed, rounding * trial.following)
+            jumps = any(
+                step <= _FAR_SMALLER * tried_size and error > e / 2 for tried_size, e in tried
+            )
+            if jumps and trial.state.pointwise is not None:
+                return trial, step, step / _FAR_SMALLER
+            tried.append((step, error))
+            located = rounding * trial.reached if trial.reached < 0.9 * step else 0.0
+            step = size(min(max(proposed, located), 0.9 * step))
+        raise ComputationError(
+            f"{self.settings.type}: no step is small enough at {last.time:g} s{trouble}"
+        )

@@ -9,10 +9,11 @@ from thermowear.app.schema.keys import Key, TableOfKeys
 
 _INTRODUCTION = """# Keys of case files
 
-A case file is in TOML. `NAME` stands for a name that the case or its mesh defines: of a body, a surface, a
-contact. Quantities are text with a unit of the dimension in brackets, such as `"50 MPa"` for `[Pa]`; limits
-are in SI. A list of quantities may also be written as `{ values = [0, 1, 2], unit = "s" }`.
-`python3 -m thermowear schema` writes all of this as a [JSON schema for editors](../../guides/editors.md).
+A case file is in TOML. `NAME` stands for a name that the case or its mesh defines: of a body, a
+surface, a contact. Quantities are text with a unit of the dimension in brackets, such as `"50 MPa"`
+for `[Pa]`; limits are in SI. A list of quantities may also be written as
+`{ values = [0, 1, 2], unit = "s" }`. `python3 -m thermowear schema` writes all of this as a
+[JSON schema for editors](../../guides/editors.md).
 
 """
 _TITLES = {

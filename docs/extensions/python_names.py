@@ -29,7 +29,7 @@ def public_names() -> dict[str, list[str]]:
         names = [name for name, value in vars(module).items() if _is_public(name, value)]
         for lazy in getattr(module, _OF_LAWS, {}).values():
             names += lazy
-        found[f"thermowear.{room}"] = sorted(set(names), key=str.lower)
+        found[f"thermowear.{room}"] = sorted(set(names).difference(*found.values()), key=str.lower)
     return found
 
 
@@ -53,8 +53,9 @@ def python_pages() -> dict[str, str]:
 def _index() -> str:
     pages = "\n".join(["thermowear", *_ROOMS])
     return (
-        "# Python interface\n\n`import thermowear as tw` has the names of the first page; those of the rooms "
-        "are `tw.laws`, `tw.contact` and so on. A [guide](../../guides/python.md) shows how they are used.\n\n"
+        "# Python interface\n\n`import thermowear as tw` has the names of the first page; those of "
+        "the rooms are `tw.laws`, `tw.contact` and so on. A [guide](../../guides/python.md) shows "
+        "how they are used.\n\n"
         f"```{{toctree}}\n:maxdepth: 1\n\n{pages}\n```\n"
     )
 

@@ -30,7 +30,7 @@ def main(arguments: list[str] | None = None) -> int:
         warnings.showwarning = _note_hook(warnings.showwarning)
         try:
             chosen = parser().parse_args(arguments)
-            return _COMMANDS[chosen.command](chosen)
+            return COMMANDS[chosen.command](chosen)
         except CaseError as error:
             return _report_errors(error.exit_code, *error.faults)
         except ComputationError as error:
@@ -146,7 +146,7 @@ def _shape(chosen) -> int:
     return case_commands.shape(chosen)
 
 
-_COMMANDS = {
+COMMANDS = {
     "run": _run,
     "sweep": _sweep,
     "study": _study,

@@ -114,7 +114,8 @@ class Reading:
                 self._check_finite(values)
                 return _between(x, values, wanted, along)
         raise CaseError(
-            f"{self.name}: no table of this analysis has it by {along}; see docs/reference/results.md"
+            f"{self.name}: no table of this analysis has it by {along}; "
+            "see docs/reference/results.md"
         )
 
     def _at_places(self, result: Result) -> np.ndarray:

@@ -1,20 +1,26 @@
 # Every command runs in the environment that scripts/env finds or makes; `make` lists the targets.
 ENV = scripts/env
 CACHE = $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/thermowear
+CORES = $(shell nproc)
 RUFF = $(CACHE)/ruff-0.14/bin/ruff
 WHOLE = THERMOWEAR_WITH=studies $(ENV)
 PYTEST = OMP_NUM_THREADS=1 $(WHOLE) python3 -m pytest
 
-.PHONY: help demo gallery docs test verify test-next lint types image meshes clean
+.PHONY: help demo demos gallery docs test verify test-next lint types image meshes clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 12
 
-demo: ## compute the demo cases into results/
-	for case in demos/*.toml; do \
-	    $(ENV) python3 -m thermowear run $$case \
-	        -o results/$$(basename $$case .toml) --overwrite || exit; \
-	done
+demo: ## one case, a hot ring on a plate, into results/
+	$(ENV) python3 -m thermowear run demos/annular_punch.toml -o results/annular_punch --overwrite
+	@echo 'look at results/annular_punch/bodies.png and interface.png; make demos computes all cases'
+
+demos: ## all demo cases into results/, one on each core
+	mkdir -p results
+	ls demos/*.toml | $(ENV) xargs -P $(CORES) -I CASE sh -c ' \
+	    name=$$(basename CASE .toml); \
+	    python3 -m thermowear run CASE -o results/$$name --overwrite >results/$$name.log 2>&1 \
+	        && echo results/$$name || { cat results/$$name.log; exit 255; }'
 
 gallery: ## demos/README.md: what each demo case shows, with pictures
 	$(ENV) python3 demos/gallery.py

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
+import fcntl
+import re
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import TypeVar
 
 from mpi4py import MPI
 from petsc4py import PETSc
@@ -37,10 +40,68 @@ _FLAGS = [
     "-fno-math-errno",
 ]
 
+_PATIENCE = 10
+"""Time for which FFCx waits for a form that another process compiles [s]."""
+_WAITED_IN_VAIN = re.compile(r"compilation timed out.*remove (?P<source>\S+\.c)\)")
+_Compiled = TypeVar("_Compiled")
+
 
 def compiled(form):
     """Compile a UFL form for assembly; reused from the cache on disk after the first time."""
-    return fem.form(form, jit_options={"cffi_extra_compile_args": _FLAGS})
+    options = {"cffi_extra_compile_args": _FLAGS, "timeout": _PATIENCE}
+    return patiently(lambda: fem.form(form, jit_options=options), _comm_of(form))
+
+
+def compiled_expression(expression: ufl.core.expr.Expr, points, comm: MPI.Comm) -> fem.Expression:
+    """Compile a UFL expression for its values at points of the reference cell."""
+    options = {"timeout": _PATIENCE}
+    return patiently(lambda: fem.Expression(expression, points, jit_options=options), comm)
+
+
+def patiently(compile: Callable[[], _Compiled], comm: MPI.Comm) -> _Compiled:
+    """Compile, also where another process is slow to compile the same, or was killed doing so.
+
+    A process that finds a source in the cache waits for its compilation, in vain if the process
+    that wrote it has been killed. All processes of this program compile under a shared lock: who
+    gets it alone knows that nobody compiles, and removes the source. Every rank calls.
+
+    Parameters
+    ----------
+    compile : callable
+        Compiles without arguments.
+    comm : MPI.Comm
+        Ranks that compile together.
+    """
+    try:
+        with _lock(fcntl.LOCK_SH):
+            return compile()
+    except (TimeoutError, RuntimeError) as error:  # RuntimeError of several ranks
+        waited = _WAITED_IN_VAIN.search(str(error))
+        if not comm.bcast(waited is not None):
+            raise
+    if waited is not None and comm.rank == 0:
+        source = Path(waited["source"])
+        with _lock(fcntl.LOCK_EX):
+            if not source.with_suffix(".c.cached").exists():
+                source.unlink(missing_ok=True)
+    comm.barrier()
+    with _lock(fcntl.LOCK_SH):
+        return compile()
+
+
+@contextlib.contextmanager
+def _lock(kind: int) -> Iterator[None]:
+    """Hold the lock of the cache of compiled forms."""
+    folder = jit.get_options()["cache_dir"]
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "thermowear.lock").open("a") as file:
+        fcntl.flock(file, kind)
+        yield
+
+
+def _comm_of(form) -> MPI.Comm:
+    """Ranks of the mesh of a form."""
+    return form.ufl_domains()[0].ufl_cargo().comm
 
 
 def assembled(form: fem.Form) -> np.ndarray:

@@ -18,7 +18,7 @@ from dolfinx import fem
 
 from ...compat import evaluate
 from ..body_mesh import BodyMesh
-from ..compiled import assembled_matrix
+from ..compiled import assembled_matrix, compiled_expression
 from ..field import geometry_space, reference_element
 from ..kinematics import Kinematics, section_measure
 
@@ -167,6 +167,6 @@ def _largest(body: BodyMesh, passage: Passage, number) -> float:
     """Largest value of an expression at the midpoints of the moving cells."""
     mesh, cells = body.mesh, body.cells(*passage.parts)
     middle = reference_element(mesh, 1).points.mean(axis=0, keepdims=True)
-    expression = fem.Expression(number, middle)
+    expression = compiled_expression(number, middle, mesh.comm)
     values = evaluate(expression, mesh, cells) if len(cells) else np.zeros(1)
     return max(mesh.comm.allgather(float(values.max())))

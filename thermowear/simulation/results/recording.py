@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import ufl
-from dolfinx import fem
 
 from ...bulk.body_mesh import BodyMesh
+from ...bulk.compiled import compiled_expression
 from ...bulk.heat.varying import straining_rises
 from ...compat import evaluate
 from ...contact.wear.implicit_step import WearRates
@@ -280,8 +280,9 @@ def sampled(mesh, grid: np.ndarray, fields: list) -> list[np.ndarray]:
     cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
     centre = grid.mean(axis=0)
     inside = centre + (grid - centre) * (1 - _INSET)
-    values = [evaluate(fem.Expression(ufl.SpatialCoordinate(mesh), grid), mesh, cells)]
-    return values + [evaluate(fem.Expression(field, inside), mesh, cells) for field in fields]
+    wanted = [(ufl.SpatialCoordinate(mesh), grid), *((field, inside) for field in fields)]
+    expressions = [compiled_expression(*each, mesh.comm) for each in wanted]
+    return [evaluate(expression, mesh, cells) for expression in expressions]
 
 
 def body_of_cells(system: System, body: BodyMesh) -> np.ndarray:

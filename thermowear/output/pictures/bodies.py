@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,6 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import Normalize
 from matplotlib.tri import Triangulation
 from scipy.spatial import cKDTree
 
@@ -26,8 +26,8 @@ from .panels import (
     Limits,
     add_color_bar,
     color_limits,
-    color_map,
     contact_window,
+    draw_colors,
     inside,
     label_coordinates,
     panels,
@@ -66,6 +66,12 @@ class BodySection:
         """Deformed section, with magnified displacements."""
         return replace(self, points=self.points + factor * self.displacement)
 
+    @cached_property
+    def outlines(self) -> dict[int, np.ndarray]:
+        """Boundary edges of each body, shape (k, 2)."""
+        each = np.unique(self.body)
+        return {n: outline(self.points, self.triangles[self.body == n]) for n in each}
+
     def draw(self, axis: Axes, name: str, limits: Limits, window: Extent) -> list[Artist]:
         """Draw a field in a window.
 
@@ -74,20 +80,11 @@ class BodySection:
         axis.set(xlim=window[:2], ylim=window[2:])
         seen = inside(self.points, window, margin=1.0)[self.triangles].any(axis=1)
         drawn: list[Artist] = []
-        for number in np.unique(self.body):
-            own = self.triangles[(self.body == number) & seen]
-            colored = axis.tripcolor(
-                Triangulation(self.points[:, 0], self.points[:, 1], own),
-                self.fields[name],
-                shading="gouraud",
-                cmap=color_map(name),
-                norm=Normalize(*limits),
-                zorder=number,
-            )
-            edges = self.points[outline(self.points, own)]
-            black = LineCollection(
-                edges, colors="black", linewidths=0.9, snap=False, zorder=number + 0.5
-            )
+        for number, edges in self.outlines.items():
+            own = Triangulation(*self.points.T, self.triangles[(self.body == number) & seen])
+            colored = draw_colors(axis, own, self.fields[name], name, limits, zorder=number)
+            style = {"colors": "black", "linewidths": 0.9, "snap": False}
+            black = LineCollection(self.points[edges], zorder=number + 0.5, **style)
             drawn += [colored, axis.add_collection(black, autolim=False)]
         return drawn
 
@@ -117,8 +114,12 @@ def outline(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Boundary edges of triangles, shape (k, 2).
 
     Triangles of different cells share no points, so that edges are identified by their midpoints.
+    Most edges are inside a cell, where two triangles share both points, and are not looked for.
     """
     edges = np.concatenate([triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
+    names = edges.min(axis=1) * len(points) + edges.max(axis=1)
+    _, first, count = np.unique(names, return_index=True, return_counts=True)
+    edges = edges[np.sort(first[count == 1])]
     middles = points[edges].mean(axis=1)
     apart = _SAME * np.ptp(points, axis=0).max()
     nearest, _ = cKDTree(middles).query(middles, k=2)

@@ -14,7 +14,7 @@ from matplotlib.tri import Triangulation
 from .. import tables
 from ..files import contacts_of, name_at, picture
 from .curves import coated_bodies, final_time, interface_panels, worn_bodies
-from .panels import MAP_STYLE, color_map, label_coordinates, panels
+from .panels import MAP_STYLE, draw_colors, label_coordinates, panels
 
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
 _LINES = 8
@@ -152,11 +152,6 @@ def _map(axis: Axes, triangles: Triangulation, data: tables.TableColumns, name: 
         lines = axis.tricontour(triangles, values, _LINES, colors="black", linewidths=0.6)
         axis.clabel(lines, fontsize=8)
     label_coordinates(axis, data)
-
-
-def draw_colors(axis: Axes, triangles: Triangulation, values: np.ndarray, name: str, **options):
-    """Fill triangles with the colours of a quantity."""
-    return axis.tripcolor(triangles, values, shading="gouraud", cmap=color_map(name), **options)
 
 
 def triangulated(x: np.ndarray, y: np.ndarray, weights: np.ndarray | None = None) -> Triangulation:

@@ -54,18 +54,22 @@ def draw_interface_maps(folder: Path, contact: str = "") -> None:
 def draw_wear_maps(folder: Path, contact: str = "") -> None:
     """Draw ``wear.png``: wear depth of each body at the end of a transient analysis."""
     end = final_time(folder)
+    if end is None:
+        return
     data = tables.read(folder / name_at("interface", None, contact))
     names = worn_bodies(data)
-    if end is not None and names:
+    if names:
         _draw(folder / picture("wear", contact), data, names, f"wear after {end:.4g} s")
 
 
 def draw_coating_maps(folder: Path, contact: str = "") -> None:
     """Draw ``coating.png``: what is left of the coatings at the end of a transient analysis."""
     end = final_time(folder)
+    if end is None:
+        return
     data = tables.read(folder / name_at("interface", None, contact))
     names = coated_bodies(data)
-    if end is not None and names:
+    if names:
         _draw(folder / picture("coating", contact), data, names, f"coating after {end:.4g} s")
 
 

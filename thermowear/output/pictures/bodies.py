@@ -1,8 +1,7 @@
-"""Temperature and stress of the two bodies; run in a separate process, as pyvista may crash."""
+"""Temperature and stress of the bodies: sections here, bodies in space by pyvista."""
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -81,7 +80,8 @@ class BodySection:
         seen = inside(self.points, window, margin=1.0)[self.triangles].any(axis=1)
         drawn: list[Artist] = []
         for number, edges in self.outlines.items():
-            own = Triangulation(*self.points.T, self.triangles[(self.body == number) & seen])
+            x, y = self.points.T
+            own = Triangulation(x, y, self.triangles[(self.body == number) & seen])
             colored = draw_colors(axis, own, self.fields[name], name, limits, zorder=number)
             style = {"colors": "black", "linewidths": 0.9, "snap": False}
             black = LineCollection(self.points[edges], zorder=number + 0.5, **style)
@@ -91,7 +91,7 @@ class BodySection:
 
 def read_section(path: Path) -> BodySection:
     """Read the file of the fields of 2D bodies."""
-    mesh = meshio.read(path)
+    mesh = meshio.vtu.read(path)  # meshio.read would end the program for a damaged file
     corners = [np.array(_CORNERS[block.type]) for block in mesh.cells]
     divided = [
         block.data[:, of].reshape(-1, 3) for block, of in zip(mesh.cells, corners, strict=True)
@@ -222,7 +222,3 @@ def _magnification(points: np.ndarray, displacement: np.ndarray) -> float:
     value = _DEFORMED_SIZE * float(np.ptp(points, axis=0).max()) / largest
     power = 10.0 ** np.floor(np.log10(value))
     return float(power * max(k for k in (1, 2, 5) if k * power <= value * (1 + 1e-12)))
-
-
-if __name__ == "__main__":
-    draw_bodies(Path(sys.argv[1]))

@@ -98,9 +98,7 @@ def panels(
         for unused in axes.ravel()[count:]:
             unused.set_visible(False)
         yield figure, axes
-        figure.savefig(
-            path, bbox_inches="tight" if crop else None, pil_kwargs=_COMPRESSION
-        )
+        figure.savefig(path, bbox_inches="tight" if crop else None, pil_kwargs=_COMPRESSION)
 
 
 @contextmanager

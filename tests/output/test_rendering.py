@@ -1,6 +1,7 @@
 """Rendering process: its jobs, its failures, its end, and its X server."""
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -9,8 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from thermowear.output.pictures import make
 from thermowear.output.rendering import PictureJob, Renderer, display, renderer
 
+RESULTS = Path(__file__).parent / "data" / "0.1.0" / "steady"
 ENDS = 30.0  # s; patience of these tests on a busy machine
 
 FAKE = """
@@ -51,6 +54,17 @@ def test_a_crash_leaves_the_others(fake):
     fake.begin(jobs("draw", "crash", "draw", "fail"))
     reasons = fake.reasons()
     assert reasons == ["", "ended by SIGSEGV: something about graphics", "", "failed"]
+
+
+def test_a_crash_leaves_the_curves(fake, tmp_path, monkeypatch):
+    """requirement: they are drawn, and a note says what is missing and why."""
+    folder = Path(shutil.copytree(RESULTS, tmp_path / "results"))
+    of_the_bodies = {"the bodies": PictureJob("crash", ())}
+    monkeypatch.setattr(make, "_of_the_bodies", lambda *_: of_the_bodies)
+    (note,) = make.make_pictures(folder, fake)
+    reason = "ended by SIGSEGV: something about graphics"
+    assert note == f"the bodies could not be drawn: {reason}"
+    assert (folder / "interface.png").is_file()
 
 
 def test_what_takes_too_long_is_given_up(fake):

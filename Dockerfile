@@ -25,7 +25,7 @@ ENV LANG=C.UTF-8 \
     PRTE_MCA_hwloc_default_binding_policy=none
 COPY demos /opt/thermowear/demos
 COPY thermowear /opt/thermowear/thermowear
-# X sockets of xvfb-run, which a user other than root cannot prepare
+# X sockets of Xvfb, which a user other than root cannot prepare
 RUN python3 -m compileall -q /opt/thermowear/thermowear \
     && useradd --create-home thermowear \
     && install -d -m 1777 /tmp/.X11-unix /work

@@ -136,16 +136,16 @@ def running_in():
 
 @pytest.fixture(scope="module")
 def bodies_not_drawn():
-    """Curves and films are drawn, but not the bodies, which takes a process and seconds."""
+    """Curves and films are drawn, but not the bodies, which takes longest."""
     from thermowear.output.pictures import make
 
-    render = make._render
+    every = make._of_the_bodies
 
-    def but_bodies(module, *arguments, **more):
-        return "" if module == "bodies" else render(module, *arguments, **more)
+    def but_bodies(*arguments):
+        return {what: job for what, job in every(*arguments).items() if what != "the bodies"}
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(make, "_render", but_bodies)
+        patch.setattr(make, "_of_the_bodies", but_bodies)
         yield
 
 

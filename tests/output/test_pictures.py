@@ -10,10 +10,10 @@ import pytest
 from thermowear import CaseError
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
-from thermowear.output.pictures import make
 from thermowear.output.pictures.curves import draw_interface
 from thermowear.output.pictures.make import make_pictures
 from thermowear.output.pictures.over_time import draw_heat, draw_history
+from thermowear.output.rendering import Renderer
 
 from ..conftest import COLD_RUNNING_IN, HOT
 
@@ -133,18 +133,24 @@ def test_bodies_are_drawn_in_colour(drawn):
     assert coloured.mean() > 0.2
 
 
-def test_a_renderer_that_dies_is_no_disaster(folders, tmp_path, monkeypatch):
-    """requirement: without a display the curves are drawn and the reason is said."""
+def test_bodies_that_cannot_be_drawn(folders, tmp_path):
+    """requirement: the curves are drawn and the reason is said."""
     folder = tmp_path / "copy"
     shutil.copytree(folders / "hot", folder)
     for picture in folder.glob("*.png"):
         picture.unlink()
-    monkeypatch.setattr(make, "_displays", lambda: [["false"]])
+    (folder / "fields.vtu").write_text("no fields", encoding="utf-8")
     problems = make_pictures(folder)
     assert len(problems) == 1
-    assert "could not be drawn" in problems[0]
+    assert problems[0].startswith("the bodies could not be drawn: ")
     assert (folder / "interface.png").exists()
     assert not (folder / "bodies.png").exists()
+
+
+def test_sections_need_no_other_process(folders, monkeypatch):
+    """requirement: neither VTK nor a second Python is started for them."""
+    monkeypatch.setattr(Renderer, "start", lambda _: pytest.fail("a process is started"))
+    assert make_pictures(folders / "cold") == []
 
 
 def test_no_results_no_pictures(tmp_path):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -127,7 +128,7 @@ def run_session(chosen, comm, import_seconds: float) -> int:
         since = "the beginning" if saved is None else f"{saved.progress.time:g} s"
         console.print(f"resumed from {since}")
     try:
-        with ConsoleProgress(console) as progress:
+        with ConsoleProgress(console) as progress, _rendering(case, chosen, comm) as renderer:
             shown = progress if comm.rank == 0 else None
             recorder = Recorder(comm, folder, shown, case)
             phases = Phases(recorder.phase)
@@ -146,7 +147,7 @@ def run_session(chosen, comm, import_seconds: float) -> int:
                 on_root(comm, lambda: _writing(lambda: folder.finish(result, phases.seconds)))
             if chosen.pictures:
                 with phases("pictures"):
-                    on_root(comm, lambda: _writing(lambda: _draw(path, console)))
+                    on_root(comm, lambda: _writing(lambda: _draw(path, console, renderer)))
         print_summary(console, result.summary, phases.seconds)
         if chosen.accuracy and result.stopped is None:
             print_discretisations(console, result.summary, COMPARED)
@@ -203,10 +204,25 @@ def _writing(action) -> None:
         action()
 
 
-def _draw(path: Path, console: Terminal) -> None:
+@contextmanager
+def _rendering(case: Case, chosen, comm) -> Iterator[Any]:
+    """Rendering process on rank 0 if pictures need one: ready when the case has been computed."""
+    analysis = case.analysis
+    waves = analysis.type == "stability" and (analysis.hot_spots or analysis.wave_lengths)
+    if comm.rank != 0 or not chosen.pictures or not (case.model == "3d" or waves):
+        yield None
+        return
+    from ..output.rendering import Renderer
+
+    with Renderer() as renderer:
+        renderer.start()
+        yield renderer
+
+
+def _draw(path: Path, console: Terminal, renderer) -> None:
     from ..output.pictures import make_pictures
 
-    for problem in make_pictures(path):
+    for problem in make_pictures(path, renderer):
         console.print(f"note: {problem}")
 
 

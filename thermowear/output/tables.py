@@ -76,9 +76,10 @@ def read(path: Path) -> TableColumns:
     """
     try:
         text = path.read_text(encoding="utf-8")
-        head, *rows = csv.reader(text[: text.rfind("\n") + 1].splitlines())
-        values = np.array([[float(cell) for cell in row] for row in rows])
-        columns = values.reshape(len(rows), len(head)).T
+        lines = text[: text.rfind("\n") + 1].splitlines()
+        (head,), rows = csv.reader(lines[:1]), lines[1:]
+        cells = np.loadtxt(rows, delimiter=",", comments=None, ndmin=2) if rows else np.zeros(0)
+        columns = cells.reshape(len(rows), len(head)).T
         found = TableColumns(path, dict(zip(head, columns, strict=True)))
     except ValueError:
         raise ValueError(f"{path}: is not a table of numbers with headers") from None

@@ -1,9 +1,9 @@
-"""Temperature and stress of the two bodies; run in a separate process, as pyvista may crash."""
+"""Temperature and stress of the bodies: sections here, bodies in space by pyvista."""
 
 from __future__ import annotations
 
-import sys
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,6 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import Normalize
 from matplotlib.tri import Triangulation
 from scipy.spatial import cKDTree
 
@@ -26,8 +25,8 @@ from .panels import (
     Limits,
     add_color_bar,
     color_limits,
-    color_map,
     contact_window,
+    draw_colors,
     inside,
     label_coordinates,
     panels,
@@ -66,6 +65,12 @@ class BodySection:
         """Deformed section, with magnified displacements."""
         return replace(self, points=self.points + factor * self.displacement)
 
+    @cached_property
+    def outlines(self) -> dict[int, np.ndarray]:
+        """Boundary edges of each body, shape (k, 2)."""
+        each = np.unique(self.body)
+        return {n: outline(self.points, self.triangles[self.body == n]) for n in each}
+
     def draw(self, axis: Axes, name: str, limits: Limits, window: Extent) -> list[Artist]:
         """Draw a field in a window.
 
@@ -74,27 +79,19 @@ class BodySection:
         axis.set(xlim=window[:2], ylim=window[2:])
         seen = inside(self.points, window, margin=1.0)[self.triangles].any(axis=1)
         drawn: list[Artist] = []
-        for number in np.unique(self.body):
-            own = self.triangles[(self.body == number) & seen]
-            colored = axis.tripcolor(
-                Triangulation(self.points[:, 0], self.points[:, 1], own),
-                self.fields[name],
-                shading="gouraud",
-                cmap=color_map(name),
-                norm=Normalize(*limits),
-                zorder=number,
-            )
-            edges = self.points[outline(self.points, own)]
-            black = LineCollection(
-                edges, colors="black", linewidths=0.9, snap=False, zorder=number + 0.5
-            )
+        for number, edges in self.outlines.items():
+            x, y = self.points.T
+            own = Triangulation(x, y, self.triangles[(self.body == number) & seen])
+            colored = draw_colors(axis, own, self.fields[name], name, limits, zorder=number)
+            style = {"colors": "black", "linewidths": 0.9, "snap": False}
+            black = LineCollection(self.points[edges], zorder=number + 0.5, **style)
             drawn += [colored, axis.add_collection(black, autolim=False)]
         return drawn
 
 
 def read_section(path: Path) -> BodySection:
     """Read the file of the fields of 2D bodies."""
-    mesh = meshio.read(path)
+    mesh = meshio.vtu.read(path)  # meshio.read would end the program for a damaged file
     corners = [np.array(_CORNERS[block.type]) for block in mesh.cells]
     divided = [
         block.data[:, of].reshape(-1, 3) for block, of in zip(mesh.cells, corners, strict=True)
@@ -117,8 +114,12 @@ def outline(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     """Boundary edges of triangles, shape (k, 2).
 
     Triangles of different cells share no points, so that edges are identified by their midpoints.
+    Most edges are inside a cell, where two triangles share both points, and are not looked for.
     """
     edges = np.concatenate([triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
+    names = edges.min(axis=1) * len(points) + edges.max(axis=1)
+    _, first, count = np.unique(names, return_index=True, return_counts=True)
+    edges = edges[np.sort(first[count == 1])]
     middles = points[edges].mean(axis=1)
     apart = _SAME * np.ptp(points, axis=0).max()
     nearest, _ = cKDTree(middles).query(middles, k=2)
@@ -221,7 +222,3 @@ def _magnification(points: np.ndarray, displacement: np.ndarray) -> float:
     value = _DEFORMED_SIZE * float(np.ptp(points, axis=0).max()) / largest
     power = 10.0 ** np.floor(np.log10(value))
     return float(power * max(k for k in (1, 2, 5) if k * power <= value * (1 + 1e-12)))
-
-
-if __name__ == "__main__":
-    draw_bodies(Path(sys.argv[1]))

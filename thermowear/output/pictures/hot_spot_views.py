@@ -1,11 +1,10 @@
 """First hot spots on the best conductor, from both sides.
 
-Run in a separate process, as pyvista may crash.
+Drawn in the rendering process, as pyvista may crash.
 """
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -48,7 +47,3 @@ def draw_views(folder: Path) -> None:
         colored = ScalarMappable(Normalize(-1.0, 1.0), _COLORS)
         label = "temperature perturbation, largest value 1"
         figure.colorbar(colored, ax=axes, label=label, orientation="horizontal", shrink=0.5)
-
-
-if __name__ == "__main__":
-    draw_views(Path(sys.argv[1]))

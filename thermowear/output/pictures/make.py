@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-import subprocess
-import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +14,8 @@ from ...errors import CaseError, ComputationError
 from ...geometry.mesh.mixed import AnyMesh
 from ...geometry.mesh.outside import outside
 from ..files import contacts_of, name_at, picture, read_summary
+from ..hot_spot_solid import HOT_SPOTS
+from ..rendering import PictureJob, Renderer, attempt
 from ..tables import MissingColumnError
 from . import curves, maps, over_time
 from .animation import FPS, check_animation, has_frames
@@ -49,15 +48,21 @@ _OTHERS: dict[str, Callable[..., None]] = {
     "cycles": over_time.draw_cycles,
     "hot_spots": draw_hot_spots,
 }
-_TIMEOUT = 180.0  # seconds for the rendering process
-_ANIMATION_TIMEOUT = 1800.0  # seconds for the rendering process of an animation
+_ANIMATION_TIMEOUT = 1800.0  # [s]
 
 
-def make_pictures(folder: Path) -> list[str]:
-    """Draw the curves in this process, the bodies and their animation in separate processes.
+def make_pictures(folder: Path, renderer: Renderer | None = None) -> list[str]:
+    """Draw all pictures: in this process, but bodies in space in another one at the same time.
 
     Rendering uses graphics libraries that may crash a process; the curves are drawn and the caller
     continues in any case.
+
+    Parameters
+    ----------
+    folder : Path
+        Results folder.
+    renderer : Renderer, optional
+        Process for bodies in space, if one has been started.
 
     Returns
     -------
@@ -69,12 +74,25 @@ def make_pictures(folder: Path) -> list[str]:
     CaseError
         If the folder contains no results.
     """
-    contacts = contacts_of(folder)
-    needed = name_at("interface", None, contacts[0])
+    needed = name_at("interface", None, contacts_of(folder)[0])
     if not (folder / needed).is_file():
         raise CaseError(f"{folder}: contains no {needed}; not a results folder of a finished run")
+    in_space = maps.is_surface(folder)
+    jobs = _of_the_bodies(folder, in_space)
+    with _drawing(list(jobs.values()), renderer) as reasons:
+        notes = _draw_curves(folder, in_space)
+    notes += [f"{folder}: not balanced: {line}" for line in violated(read_summary(folder))]
+    if not (folder / "fields.vtu").is_file():
+        return [*notes, f"{folder}: no fields.vtu, so no pictures of the bodies"]
+    failed = [(what, why) for what, why in zip(jobs, reasons, strict=True) if why]
+    return notes + [f"{what} could not be drawn: {why}" for what, why in failed]
+
+
+def _draw_curves(folder: Path, in_space: bool) -> list[str]:
+    """Draw curves and maps from the tables; returns missing pictures with reasons."""
     notes = []
-    first = _OVER_A_SURFACE if maps.is_surface(folder) else _ALONG_A_LINE
+    first = _OVER_A_SURFACE if in_space else _ALONG_A_LINE
+    contacts = contacts_of(folder)
     each = [(name, draw, (contact,)) for contact in contacts for name, draw in first.items()]
     for name, draw, contact in [*each, *((name, draw, ()) for name, draw in _OTHERS.items())]:
         try:
@@ -82,15 +100,40 @@ def make_pictures(folder: Path) -> list[str]:
                 draw(folder, *contact)
         except MissingColumnError as reason:
             notes.append(f"{folder}: no {picture(name, *contact)}, as {reason}")
-    notes += [f"{folder}: not balanced: {line}" for line in violated(read_summary(folder))]
+    return notes
+
+
+def _of_the_bodies(folder: Path, in_space: bool) -> dict[str, PictureJob]:
+    """Pictures of the bodies that a results folder has data for, by what they show."""
     if not (folder / "fields.vtu").is_file():
-        return [*notes, f"{folder}: no fields.vtu, so no pictures of the bodies"]
-    reasons = {"the bodies": _render("bodies", str(folder.resolve()))}
-    if (folder / "hot_spots.vtu").is_file():
-        reasons["the hot spots"] = _render("hot_spot_views", str(folder.resolve()))
+        return {}
+    path = str(folder.resolve())
+    jobs = {"the bodies": PictureJob("bodies", (path,), in_space)}
+    if (folder / HOT_SPOTS).is_file():
+        jobs["the hot spots"] = PictureJob("hot spots", (path,))
     if has_frames(folder):
-        reasons["the animation"] = _animate(folder, folder / "animation.gif", FPS)
-    return notes + [f"{what} could not be drawn: {why}" for what, why in reasons.items() if why]
+        jobs["the animation"] = _animation(folder, folder / "animation.gif", FPS, in_space)
+    return jobs
+
+
+def _animation(folder: Path, path: Path, fps: float, in_space: bool) -> PictureJob:
+    arguments = str(folder.resolve()), str(path.resolve()), fps
+    return PictureJob("animation", arguments, in_space, _ANIMATION_TIMEOUT)
+
+
+@contextmanager
+def _drawing(jobs: list[PictureJob], renderer: Renderer | None = None) -> Iterator[list[str]]:
+    """Draw while the caller draws others; at the end, a list of the reason of each failure.
+
+    Sections need no VTK, and no other process.
+    """
+    reasons: list[str] = []
+    with nullcontext(renderer) if renderer else Renderer() as there:
+        there.begin([job for job in jobs if job.in_space])
+        yield reasons
+        here = iter([attempt(job.kind, job.arguments) for job in jobs if not job.in_space])
+        rendered = iter(there.reasons())
+        reasons += [next(rendered if job.in_space else here) for job in jobs]
 
 
 def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
@@ -113,9 +156,7 @@ def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
         If drawing fails.
     """
     check_animation(folder, path)
-    reason = _animate(folder, path, fps)
-    if reason:
-        raise ComputationError(f"{path}: could not be drawn: {reason}")
+    _draw(_animation(folder, path, fps, maps.is_surface(folder)), path)
 
 
 def make_mesh_picture(mesh: AnyMesh, path: Path) -> None:
@@ -140,49 +181,12 @@ def make_mesh_picture(mesh: AnyMesh, path: Path) -> None:
     with tempfile.TemporaryDirectory() as folder:
         source = Path(folder) / "mesh.npz"
         np.savez(source, allow_pickle=False, **arrays)
-        reason = _render("mesh", str(source), str(path.resolve()))
-    if reason:
-        raise ComputationError(f"{path}: could not be drawn: {reason}")
+        _draw(PictureJob("mesh", (str(source), str(path.resolve()))), path)
 
 
-def _animate(folder: Path, path: Path, fps: float) -> str:
-    """Draw an animation; returns the reason of a failure, empty on success."""
-    arguments = str(folder.resolve()), str(path.resolve()), str(fps)
-    return _render("animation.make", *arguments, timeout=_ANIMATION_TIMEOUT)
-
-
-def _render(module: str, *arguments: str, timeout: float = _TIMEOUT) -> str:
-    """Run a rendering module in a process; returns the reason of a failure, empty on success."""
-    command = [sys.executable, "-m", f"{__package__}.{module}", *arguments]
-    package_root = str(Path(__file__).parents[3])
-    path = os.pathsep.join(filter(None, [package_root, os.environ.get("PYTHONPATH")]))
-    environment = os.environ | {"PYTHONPATH": path, "PYVISTA_OFF_SCREEN": "true"}
-    for name in [k for k in environment if k.startswith(("OMPI_", "PMIX_", "PRTE_", "PMI_"))]:
-        del environment[name]  # the renderer is not a rank of the parallel run
-    reason = ""
-    for prefix in _displays():
-        try:
-            done = subprocess.run(
-                [*prefix, *command],
-                env=environment,
-                cwd=package_root,  # no modules or settings from the current folder
-                capture_output=True,
-                text=True,
-                timeout=timeout,
-                check=False,
-            )
-        except (OSError, subprocess.TimeoutExpired) as error:
-            reason = str(error)
-            continue
-        if done.returncode == 0:
-            return ""
-        said = (done.stderr.strip() or done.stdout.strip()).splitlines()
-        reason = said[-1] if said else f"exit code {done.returncode}"
-    return reason
-
-
-def _displays() -> list[list[str]]:
-    """Command prefixes to try, most promising first: some builds of VTK need an X server."""
-    direct: list[list[str]] = [[]]
-    virtual = [["xvfb-run", "-a"]] if shutil.which("xvfb-run") else []
-    return direct + virtual if os.environ.get("DISPLAY") else virtual + direct
+def _draw(job: PictureJob, path: Path) -> None:
+    """Draw one picture; a failure is an error."""
+    with _drawing([job]) as reasons:
+        pass
+    if reasons[0]:
+        raise ComputationError(f"{path}: could not be drawn: {reasons[0]}")

@@ -14,7 +14,7 @@ from matplotlib.tri import Triangulation
 from .. import tables
 from ..files import contacts_of, name_at, picture
 from .curves import coated_bodies, final_time, interface_panels, worn_bodies
-from .panels import MAP_STYLE, color_map, label_coordinates, panels
+from .panels import MAP_STYLE, draw_colors, label_coordinates, panels
 
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
 _LINES = 8
@@ -54,18 +54,22 @@ def draw_interface_maps(folder: Path, contact: str = "") -> None:
 def draw_wear_maps(folder: Path, contact: str = "") -> None:
     """Draw ``wear.png``: wear depth of each body at the end of a transient analysis."""
     end = final_time(folder)
+    if end is None:
+        return
     data = tables.read(folder / name_at("interface", None, contact))
     names = worn_bodies(data)
-    if end is not None and names:
+    if names:
         _draw(folder / picture("wear", contact), data, names, f"wear after {end:.4g} s")
 
 
 def draw_coating_maps(folder: Path, contact: str = "") -> None:
     """Draw ``coating.png``: what is left of the coatings at the end of a transient analysis."""
     end = final_time(folder)
+    if end is None:
+        return
     data = tables.read(folder / name_at("interface", None, contact))
     names = coated_bodies(data)
-    if end is not None and names:
+    if names:
         _draw(folder / picture("coating", contact), data, names, f"coating after {end:.4g} s")
 
 
@@ -152,11 +156,6 @@ def _map(axis: Axes, triangles: Triangulation, data: tables.TableColumns, name: 
         lines = axis.tricontour(triangles, values, _LINES, colors="black", linewidths=0.6)
         axis.clabel(lines, fontsize=8)
     label_coordinates(axis, data)
-
-
-def draw_colors(axis: Axes, triangles: Triangulation, values: np.ndarray, name: str, **options):
-    """Fill triangles with the colours of a quantity."""
-    return axis.tripcolor(triangles, values, shading="gouraud", cmap=color_map(name), **options)
 
 
 def triangulated(x: np.ndarray, y: np.ndarray, weights: np.ndarray | None = None) -> Triangulation:

@@ -1,11 +1,10 @@
 """Mesh of bodies in space with its named surfaces, from above and from below.
 
-Run in a separate process, as pyvista may crash.
+Drawn in the rendering process, as pyvista may crash.
 """
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -76,7 +75,3 @@ def _view(
             )
         add_edges(plotter, whole)
     return cropped(picture[0])
-
-
-if __name__ == "__main__":
-    draw_mesh(*map(Path, sys.argv[1:]))

@@ -12,8 +12,10 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.collections import TriMesh
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.tri import Triangulation
 
 from ..tables import TableColumns
 
@@ -50,6 +52,8 @@ SMALL_CONTACT = 0.15
 _WINDOW_SIZE = 3.0  # width of that window relative to the size of the contact
 _MARGIN = 0.02
 _PERCENTILE = 99.5  # percentile of the samples at the end of the colour range
+_COMPRESSION = {"compress_level": 4}
+"""Half the time of the default for files that are a tenth larger."""
 
 Extent = tuple[float, float, float, float]  # left, right, lower, upper [mm]
 Limits = tuple[float, float]
@@ -94,7 +98,7 @@ def panels(
         for unused in axes.ravel()[count:]:
             unused.set_visible(False)
         yield figure, axes
-        figure.savefig(path, bbox_inches="tight" if crop else None)
+        figure.savefig(path, bbox_inches="tight" if crop else None, pil_kwargs=_COMPRESSION)
 
 
 @contextmanager
@@ -233,6 +237,30 @@ def color_limits(*states: np.ndarray) -> Limits:
 def color_map(name: str) -> str:
     """Colour map of a quantity, of bodies 1 and 2 alike."""
     return COLORS[re.sub("_[12]$", "", name)]
+
+
+def draw_colors(
+    axis: Axes,
+    triangles: Triangulation,
+    values: np.ndarray,
+    name: str,
+    limits: Limits | None = None,
+    **options: Any,
+) -> TriMesh:
+    """Fill triangles with the colours of a quantity, shaded smoothly.
+
+    As `Axes.tripcolor`, which makes a path of each triangle to find the limits of the axes. The
+    layout would make them, too, though the axes clip all colours.
+    """
+    norm = Normalize(*limits) if limits else Normalize()
+    mesh = TriMesh(triangles, array=values, cmap=color_map(name), norm=norm, **options)
+    mesh.autoscale_None()
+    mesh.set_in_layout(False)
+    x, y = triangles.x, triangles.y
+    axis.update_datalim([(x.min(), y.min()), (x.max(), y.max())])
+    axis.autoscale_view()
+    axis.add_collection(mesh, autolim=False)
+    return mesh
 
 
 def add_color_bar(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -238,9 +239,21 @@ def add_edges(plotter, surface) -> None:
         plotter.add_mesh(edges, color="black", line_width=2, lighting=False)
 
 
+def warm_up() -> None:
+    """Load what the first picture needs, by drawing one for nobody."""
+    with rendering() as (plotter, _):
+        plotter.add_mesh(pyvista.Sphere())
+
+
+@cache
+def _plotter():
+    """Plotter for all pictures: shaders are compiled for each window."""
+    return pyvista.Plotter(off_screen=True, window_size=list(PIXELS))
+
+
 @contextmanager
 def rendering(direction=_CAMERA, focus=None) -> Iterator[tuple[Any, list[np.ndarray]]]:
-    """Plotter with a white background and its picture, a list that is filled at the end.
+    """Empty plotter with a white background and its picture, a list that is filled at the end.
 
     Parameters
     ----------
@@ -249,15 +262,19 @@ def rendering(direction=_CAMERA, focus=None) -> Iterator[tuple[Any, list[np.ndar
     focus : tuple of float, optional
         Bounds of the part to be seen, by default all that is drawn [mm].
     """
-    plotter = pyvista.Plotter(off_screen=True, window_size=list(PIXELS))
-    plotter.set_background("white")  # type: ignore[arg-type]
+    plotter = _plotter()
+    plotter.suppress_rendering = True  # until all is there
+    plotter.clear_actors()
+    plotter.hide_axes()
+    plotter.set_background("white")
     picture: list[np.ndarray] = []
     yield plotter, picture
-    plotter.enable_parallel_projection()  # type: ignore[call-arg]
+    plotter.enable_parallel_projection()
     plotter.camera_position = [np.array(direction), np.zeros(3), (0.0, 0.0, 1.0)]
     if focus is None:
-        plotter.add_axes(line_width=4)  # type: ignore[call-arg]
-    plotter.reset_camera(bounds=focus)  # type: ignore[call-arg]
+        plotter.add_axes(line_width=4)
+    plotter.reset_camera(bounds=focus)
     plotter.camera.zoom(1.1)
+    plotter.suppress_rendering = False
+    plotter.render()
     picture.append(plotter.screenshot(None, return_img=True))
-    plotter.close()

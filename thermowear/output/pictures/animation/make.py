@@ -1,8 +1,7 @@
-"""Pictures of an animation and their drawing; run in a separate process."""
+"""Pictures of an animation and their drawing."""
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -142,7 +141,3 @@ def draw_animation(folder: Path, path: Path, fps: float = FPS) -> None:
         return
     some = [scene.picture(state) for state in (states[0], states[len(states) // 2], states[-1])]
     write_gif(path, pictures, fps, common_palette(some, color_map(frames.field)))
-
-
-if __name__ == "__main__":
-    draw_animation(Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]))

@@ -14,13 +14,14 @@ from matplotlib.lines import Line2D
 
 from ....results import FIELDS
 from ..bodies import read_section
-from ..maps import draw_colors, triangulated
+from ..maps import triangulated
 from ..panels import (
     BODIES,
     add_color_bar,
     clipped_top,
     color_limits,
     contact_window,
+    draw_colors,
     inside,
     is_flat,
     label_coordinates,
@@ -129,8 +130,8 @@ class FaceMap(ScenePanel):
             self._drawn.pop().remove()
         table = state.interfaces[self._contact]
         x, y, values = map(table.drawn, ("x", "y", self._name))
-        ends = dict(zip(("vmin", "vmax"), self._limits, strict=True))
-        self._drawn = [draw_colors(self._axis, triangulated(x, y), values, self._name, **ends)]
+        triangles = triangulated(x, y)
+        self._drawn = [draw_colors(self._axis, triangles, values, self._name, self._limits)]
 
 
 def face_maps(frames: FrameSequence) -> list[FaceMap]:

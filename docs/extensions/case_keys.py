@@ -65,9 +65,9 @@ def _index(tables: dict[str, TableOfKeys]) -> str:
 def title_of(table: TableOfKeys) -> str:
     """Heading of a table: its type, or its place in the file."""
     kind = next((key.kinds[0] for key in table.keys if key.name == "type"), "")
-    if kind.startswith('"'):
-        return f"`{_group(table)}`, `type = {kind}`"
     places = ", ".join(f"`[{path}]`" for path in table.paths if path)
+    if kind.startswith('"'):
+        places += f", `type = {kind}`"
     return places or table.meaning.rstrip(".")
 
 

@@ -63,5 +63,5 @@ def _index() -> str:
 def _entry(module: str, name: str) -> str:
     value = getattr(importlib.import_module(module), name)
     kind = "autoclass" if inspect.isclass(value) else "autofunction"
-    options = ":members:\n" if kind == "autoclass" else ""
+    options = ":members:\n   :exclude-members: model_config\n" if kind == "autoclass" else ""
     return f"```{{eval-rst}}\n.. {kind}:: {module}.{name}\n   {options}```\n"

@@ -32,6 +32,7 @@ def test_neighbours(settings, coarser, finer):
     assert found == {"coarser": coarser, "finer": finer}
 
 
+@pytest.mark.slow
 def test_three_side_by_side(tmp_path, capsys):
     """requirement: ``run --accuracy`` prints coarser, own and finer numbers, and keeps them."""
     assert main(["init", "cylinder-on-block", "-o", str(tmp_path / "case.toml")]) == 0

@@ -353,6 +353,7 @@ def numbers():
     ]
 
 
+@pytest.mark.slow
 @pytest_needs_ranks
 def test_two_ranks_give_the_serial_numbers():
     """requirement: temperatures and balances on two ranks as on one, to 1e-8."""

@@ -46,7 +46,7 @@ def run(folder, *words):
         return main(["run", str(folder / "case.toml"), "-o", str(folder / "results"), *words])
 
 
-@pytest.fixture(scope="module", params=ASSEMBLIES)
+@pytest.fixture(scope="module", params=marked_slow(ASSEMBLIES, "cad-pad", "two-pads-3d"))
 def finished(request, tmp_path_factory):
     """Starter case by name, and the results folder of a coarse run."""
     place = tmp_path_factory.mktemp(request.param)
@@ -213,6 +213,7 @@ def test_commands_for_several_bodies(tmp_path, capsys):
     assert "there are several contact faces" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_frames_by_contact(tmp_path, bodies_not_drawn):
     """requirement: an interface for each contact and frame; the animation shows all contacts."""
     (tmp_path / "case.toml").write_text(starter_text(TWO_PADS), encoding="utf-8")

@@ -21,6 +21,7 @@ from thermowear.output.files import name_at
 
 from ..case import starter
 from ..case.starter import FRETTING, HERTZ, PUNCH, RECIPROCATING, RUNNING_IN, SPHERE, STEADY
+from ..slow import marked_slow
 from ..systems import prepared
 
 SPACE = "sphere-fretting"
@@ -126,7 +127,7 @@ def summary_of(folder: Path) -> dict:
 # ---- the starter cases ----
 
 
-@pytest.fixture(scope="module", params=PAIRS)
+@pytest.fixture(scope="module", params=marked_slow(PAIRS, "ball-in-socket", "disk-brake-3d"))
 def finished(request, tmp_path_factory):
     """Starter case by name, and the results folder of a coarse run."""
     name = request.param

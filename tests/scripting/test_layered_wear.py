@@ -45,6 +45,7 @@ def test_layers(model, substrate):
     np.testing.assert_allclose(found.interface.wear_rate_1, known.interface.wear_rate_1, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_the_loop_shows_what_is_left(model):
     """
     requirement: state by state, of the layers that are given.

@@ -16,13 +16,18 @@ def check(found):
 
 @pytest.mark.parametrize(
     ("orders", "tetrahedra"),
-    [((1, 2), (True, False)), ((2, 1), (False, True)), ((2, 1), (True,) * 2)],
+    [
+        pytest.param((1, 2), (True, False), marks=pytest.mark.slow),
+        ((2, 1), (False, True)),
+        ((2, 1), (True,) * 2),
+    ],
 )
 def test_fields_of_blocks_in_series(orders, tetrahedra):
     """requirement: pressure, and T and u at every node of each user's mesh, exact."""
     check(mixed(orders, tetrahedra))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
 def test_fields_on_two_ranks(tmp_path):
     """requirement: the same on distributed meshes."""

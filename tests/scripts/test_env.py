@@ -27,7 +27,7 @@ PACKAGE_OF = dict.fromkeys(["basix", "ffcx", "ufl"], "python3-dolfinx") | {
 }
 
 
-OPTIONAL = {"pandas", "distributed", "emcee"}
+OPTIONAL = {"pandas", "distributed", "emcee", "shtab"}
 """Modules that are used where they are installed, and asked for by a message elsewhere."""
 
 
@@ -168,7 +168,7 @@ def test_env_with_further_packages():
         capture_output=True,
     )
     assert done.returncode == 1
-    assert "THERMOWEAR_WITH is nothing; it may be studies" in done.stderr
+    assert "THERMOWEAR_WITH is nothing; it may be studies or docs" in done.stderr
 
 
 def test_env_asks_for_every_import_of_the_package():

@@ -82,6 +82,7 @@ def test_of_a_mesh_file_only_the_degree_is_chosen():
     assert computed(found).summary["shape_error_estimate_relative"] < 0.05
 
 
+@pytest.mark.slow
 def test_of_bodies_from_cad_only_the_degree_is_chosen(monkeypatch):
     """requirement: sizes of bodies from CAD are kept, and the note says so."""
     monkeypatch.chdir(next(iter(starters.__path__)))  # that of the STEP files
@@ -128,6 +129,7 @@ def test_the_folder_has_the_mesh(tmp_path, capsys):
     assert main(["mesh", str(path), "-o", str(tmp_path / "ring.vtu")]) == 0
 
 
+@pytest.mark.slow
 def test_a_sweep_of_accuracies():
     """requirement: each variant has a mesh of its own."""
     (_, coarse), (_, fine) = tw.sweep(

@@ -132,7 +132,7 @@ def test_other_units():
 
 
 @needs_mpirun
-@pytest.mark.parametrize("kind", assembly_on_ranks.KINDS)
+@pytest.mark.parametrize("kind", marked_slow(assembly_on_ranks.KINDS, "by region", "coated"))
 def test_two_ranks(tmp_path, kind):
     """requirement: two ranks give the running-in of the serial run, to 1e-8."""
     expected = assembly_on_ranks.computed(kind)

@@ -37,6 +37,7 @@ def steady(folder):
     return tw.run(case(folder))
 
 
+@pytest.mark.slow
 def test_the_same_on_two_ranks(folder, steady, tmp_path):
     """requirement: two ranks give the serial results."""
     module = "tests.simulation.cad_pad_on_ranks"

@@ -49,7 +49,14 @@ def load_and_side(i, drag: float) -> tuple[np.ndarray, np.ndarray]:
     return i.weight * up, i.weight * side
 
 
-@pytest.mark.parametrize(("friction", "sense"), [(0.0, 1), (0.1, 1), (0.1, -1)])
+@pytest.mark.parametrize(
+    ("friction", "sense"),
+    [
+        pytest.param(0.0, 1, marks=pytest.mark.slow),
+        (0.1, 1),
+        pytest.param(0.1, -1, marks=pytest.mark.slow),
+    ],
+)
 def test_volumes_over_coefficients_are_force_times_distance(friction, sense):
     """requirement: V_c/k_c + V_s/k_s = F s, of the parts along the load; equilibrium across it."""
     result = worn(friction, sense)

@@ -359,6 +359,7 @@ def test_a_run_goes_on_from_its_checkpoint(tmp_path, capsys):
     }
 
 
+@pytest.mark.slow
 @needs_mpirun
 def test_two_ranks(tmp_path):
     """requirement: the worn depths and forces of the serial run on two ranks, to 1e-8."""

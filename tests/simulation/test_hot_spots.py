@@ -141,6 +141,7 @@ class Notes(Observer):
         self.found.append(text)
 
 
+@pytest.mark.slow
 def test_wear_that_holds_the_hot_spots_is_reported():
     """requirement: no critical speed with wear is said in a note, not only by an empty cell."""
     notes = Notes()

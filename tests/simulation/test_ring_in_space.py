@@ -70,6 +70,7 @@ def test_no_equilibrium_beyond_the_critical_speed_of_hot_spots(coarse):
     assert flat.history[-1].time == 1000.0
 
 
+@pytest.mark.slow
 def test_meshes_of_tetrahedra_follow_deep_wear(coarse):
     """requirement: geometry updates as in the axisymmetric run; worn volume that of the mesh."""
     tables = {

@@ -12,14 +12,15 @@ from thermowear.verification import CASES, SLOW, Check, compare
 from thermowear.verification.check import computed, starter
 
 LONG = SLOW | {
-    "annular-punch", "beam-shakedown", "block-on-ring", "braking-stop", "calibration", "case-2",
+    "annular-punch", "beam-shakedown", "block-on-ring", "braking-stop", "cad-part", "calibration",
+    "case-2",
     "case-3", "case-4", "case-5", "case-6", "case-7", "case-8", "case-9", "clutch-pack",
     "coated-bush", "coating", "deep-wear-3d", "floating-caliper", "fretting-cylinder",
     "fretting-sphere", "fretting-wear", "fuel-fretting", "growing-cylinder", "growing-sphere",
     "half-plane-instability", "hertz-elliptical", "hertz-line", "layer-instability",
     "methods-agree", "mindlin", "mindlin-sphere", "minimality", "moving-band", "optimal-shape",
-    "pad-disk-pad", "patch", "pin-on-disk-3d", "pressure-conductance", "reciprocating",
-    "reciprocating-3d", "ring-3d", "running-in", "sliding-rod", "step-flux", "tei-growth",
+    "pad-disk-pad", "patch", "patch-3d", "pin-on-disk-3d", "pressure-conductance", "reciprocating",
+    "reciprocating-3d", "ring-3d", "running-in", "sliding-rod", "sobol", "step-flux", "tei-growth",
     "tei-layer-antisymmetric", "tei-layer-symmetric", "tei-ring", "temperature-dependent",
     "two-shoes", "two-slabs",
 }  # fmt: skip

@@ -215,6 +215,7 @@ def test_the_start_says_nothing_of_wear(tmp_path):
     assert found.fit.predicted == [0.0]
 
 
+@pytest.mark.slow
 def test_posterior(tmp_path):
     """requirement: the posterior of sharp data is the normal distribution of the fit."""
     pytest.importorskip("emcee")

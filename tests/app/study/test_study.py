@@ -37,6 +37,7 @@ def test_a_linear_response_to_a_normal_input_is_normal():
     assert found.indices is None
 
 
+@pytest.mark.slow
 def test_sobol_indices_of_a_product():
     """requirement: torque = friction x force x radius has the indices of a product, within 0.02."""
     pressure = {"distribution": "uniform", "lower": "20 MPa", "upper": "80 MPa"}

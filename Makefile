@@ -30,7 +30,7 @@ docs: ## the site in docs/_build/html; warnings are errors
 	@echo docs/_build/html/index.html
 
 test: ## the tests but the slow ones
-	$(PYTEST) -n 2 -m "not slow"
+	$(PYTEST) -n 2 -m "not slow" --durations=20
 
 verify: ## all tests, with the slow ones and random examples
 	HYPOTHESIS_PROFILE=explore $(PYTEST) -n 2

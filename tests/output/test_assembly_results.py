@@ -18,6 +18,7 @@ from thermowear.output.frames import frame_files, keep_indexed
 from thermowear.output.pictures.animation.panels import SectionPanel, contact_curves
 from thermowear.output.pictures.animation.states import read_frames
 
+from ..slow import marked_slow
 from .test_end_to_end import HEADS
 
 ASSEMBLIES = [name for name in starters() if "[holders." in starter_text(name)]

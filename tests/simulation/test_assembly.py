@@ -20,6 +20,7 @@ from thermowear.verification.cases.assembly.pad_disk_pad import (
 from thermowear.verification.check import computed
 
 from ..app.test_resume import assert_the_same
+from ..slow import marked_slow
 from ..test_parallel import pytestmark as needs_mpirun
 from ..test_parallel import same_on_two_ranks
 from . import assembly_on_ranks

@@ -10,6 +10,7 @@ import pytest
 from thermowear.reference.coated_bush import CoatedBush
 
 from ..case.starter import solved
+from ..slow import marked_slow
 
 BUSH = "shaft-in-bush-coated"
 R, SPEED, FORCE = 10e-3, 0.2, 500.0
@@ -50,12 +51,7 @@ def load_and_side(i, drag: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 @pytest.mark.parametrize(
-    ("friction", "sense"),
-    [
-        pytest.param(0.0, 1, marks=pytest.mark.slow),
-        (0.1, 1),
-        pytest.param(0.1, -1, marks=pytest.mark.slow),
-    ],
+    ("friction", "sense"), marked_slow([(0.0, 1), (0.1, 1), (0.1, -1)], (0.0, 1), (0.1, -1))
 )
 def test_volumes_over_coefficients_are_force_times_distance(friction, sense):
     """requirement: V_c/k_c + V_s/k_s = F s, of the parts along the load; equilibrium across it."""

@@ -43,7 +43,7 @@ def _preamble() -> dict[str, str]:
     from ..verification import CASES
 
     line_ends = "\\n"
-    lists = {"starters": starters(), "checks": CASES}
+    lists = {"starters": [*starters()], "checks": [*CASES]}
     functions = (  # shtab splits words at ends of lines only
         f"_thermowear_{name}() {{ compgen -W $'{line_ends.join(words)}' -- \"$1\"; }}\n"
         for name, words in lists.items()

@@ -33,9 +33,9 @@ def meanings_of(table: type[BaseModel]) -> dict[str, str]:
     """
     described: dict[str, str] = {}
     referred: list[str] = []
-    law = getattr(table, "LAW", None)  # the table of a registered law has no text of its own
+    law = getattr(table, "LAW", table)  # the table of a registered law has no text of its own
     for base in (law, *table.__mro__):
-        if base in (None, BaseModel, object) or not base.__doc__:
+        if base in (BaseModel, object) or not base.__doc__:
             continue
         described = _attributes(base) | described
         referred += _REFERENCE.findall(inspect.cleandoc(base.__doc__))

@@ -141,3 +141,10 @@ def test_small_weights_tear_no_holes():
     x, y = grid(np.linspace(0.0, 40.0, 41), np.linspace(0.0, 40.0, 41))
     weights = np.where(rng.random(len(x)) < 0.1, 1e-3, 1.0)
     assert areas(triangulated(x, y, weights)).sum() == pytest.approx(40 * 40, rel=1e-9)
+
+
+def test_uneven_points_tear_no_holes():
+    """requirement: a place where a few points have much less area than their spacing is no gap."""
+    x, y = grid(np.linspace(0.0, 40.0, 41), np.linspace(0.0, 40.0, 41))
+    weights = np.where(np.hypot(x - 20, y - 20) < 2.2, 0.02, 1.0)
+    assert areas(triangulated(x, y, weights)).sum() == pytest.approx(40 * 40, rel=1e-9)

@@ -64,7 +64,7 @@ def draw_faces(path: Path, grid, interface: TableColumns, seen: Seen) -> None:
     body = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == seen.number))
     surface = body.clean(tolerance=1e-6 * body.length).extract_surface()
     focus = focus_on(interface, surface, _WIDE)
-    outwards = 1.0 if face.center[2] >= surface.center[2] else -1.0
+    outwards = _outwards(face, surface)
     views = [_pressure(face, surface, focus, interface, outwards, seen.title)]
     if "temperature" in grid.point_data:
         views.append(_temperature(surface, focus, outwards, seen.title))
@@ -89,6 +89,13 @@ def magnification(size: float, heights: np.ndarray) -> float:
     wanted = _RELIEF * size / float(np.ptp(heights))
     power = 10.0 ** np.floor(np.log10(wanted))
     return float(power * max(k for k in (1, 2, 5) if k * power <= wanted * (1 + 1e-12)))
+
+
+def _outwards(face, surface) -> float:
+    """Direction along z that a face of a body looks to: the sign of its normal, 1 or -1."""
+    oriented = surface.compute_normals(point_normals=False, auto_orient_normals=True)
+    at_face = oriented.find_closest_cell(face.points)
+    return 1.0 if oriented.cell_data["Normals"][at_face, 2].mean() >= 0.0 else -1.0
 
 
 def _size(face) -> float:

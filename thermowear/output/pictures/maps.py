@@ -10,6 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.tri import Triangulation
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from .. import tables
 from ..files import contacts_of, name_at, picture
@@ -30,6 +32,8 @@ _LARGEST_ANGLE = 100.0
 _SHORT = 0.1
 """Length of a boundary edge relative to the face, up to which a triangle of any angle is drawn."""
 
+_FEW = 6
+"""Largest number of connected triangles that are no gap, but a place with uneven points."""
 _GAP, _LONG, _ROUNDS = 0.8, 6.0, 4
 """Area of a triangle relative to that of its corners above which it lies across a gap; length of a
 side relative to the root of a point's area, and number of triangles beside it that do so, too."""
@@ -209,7 +213,16 @@ def _across_gaps(triangles: Triangulation, corners: np.ndarray, weights: np.ndar
     across = (triangles.neighbors >= 0) & (lengths > _LONG * np.sqrt(mean)[:, None])
     for _ in range(_ROUNDS):
         found |= (across & found[triangles.neighbors]).any(axis=1)
-    return found
+    return found & (_group_sizes(triangles.neighbors, found) > _FEW)
+
+
+def _group_sizes(neighbors: np.ndarray, chosen: np.ndarray) -> np.ndarray:
+    """Number of triangles in the group of each chosen one; groups are connected by sides."""
+    beside = (neighbors >= 0) & chosen[neighbors] & chosen[:, None]
+    pairs = np.nonzero(beside)[0], neighbors[beside]
+    links = coo_array((np.ones(len(pairs[0])), pairs), shape=(len(chosen), len(chosen)))
+    group = connected_components(links, directed=False)[1]
+    return np.bincount(group)[group]
 
 
 def _angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -51,6 +51,8 @@ html_theme_options = {
 }
 html_show_sphinx = False
 copyright = "the thermowear authors, MIT licence"
-# Debian's copy of MathJax: the site loads nothing from elsewhere
+# Debian's copy of MathJax 2: the site loads nothing from elsewhere. MyST writes settings of MathJax 3.
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
+mathjax2_config = {"tex2jax": {"processClass": "math", "ignoreClass": "tex2jax_ignore"}}
+myst_update_mathjax = False
 copybutton_prompt_text = "$ "

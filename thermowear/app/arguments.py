@@ -59,7 +59,7 @@ def _add_runs(commands) -> None:
     existing = run.add_mutually_exclusive_group()
     _add_flag(existing, "--overwrite", "replace existing results")
     _add_flag(existing, "--resume", "continue the run that was stopped in DIR")
-    run.add_argument("--no-pictures", dest="pictures", action="store_false")
+    run.add_argument("--no-pictures", dest="pictures", action="store_false", help="draw nothing")
     compared = "repeat the case one degree lower and higher, and print all three side by side"
     _add_flag(run, "--accuracy", compared)
 
@@ -223,7 +223,9 @@ def _add_batch(command: argparse.ArgumentParser) -> None:
 
 def _add_workers(command: argparse.ArgumentParser) -> None:
     """Options of commands that compute many variants: pictures, and who computes."""
-    command.add_argument("--no-pictures", dest="pictures", action="store_false")
+    command.add_argument(
+        "--no-pictures", dest="pictures", action="store_false", help="draw nothing"
+    )
     command.add_argument(
         "--executor",
         choices=("processes", "mpi", "dask"),

@@ -51,7 +51,7 @@ html_theme_options = {
 }
 html_show_sphinx = False
 copyright = "the thermowear authors, MIT licence"
-# Debian's copy of MathJax 2: the site loads nothing from elsewhere. MyST writes settings of MathJax 3.
+# Debian's copy of MathJax 2: nothing is loaded from elsewhere. MyST has settings for MathJax 3.
 mathjax_path = "mathjax/MathJax.js?config=TeX-AMS_CHTML"
 mathjax2_config = {"tex2jax": {"processClass": "math", "ignoreClass": "tex2jax_ignore"}}
 myst_update_mathjax = False

@@ -207,12 +207,13 @@ def test_a_jump_of_the_pressure_is_located_and_passed(monkeypatch, pointwise):
     monkeypatch.setattr(transient, "advance_with_error", advanced)
     settings = SimpleNamespace(tolerance=1e-3, type="transient")
     last = SimpleNamespace(state=state, time=0.0, step=0.0, error=0.0, wanted=1.0)
-    words = None, last, lambda wanted: wanted, 1.0, 1e-12, settings
+    steps = transient._Steps(None, settings, None, SimpleNamespace(rounding=1.0))
+    words = last, lambda wanted: wanted, 1e-12
     if pointwise is None:
         with pytest.raises(tw.ComputationError, match="no step is small enough at 0 s"):
-            transient._accept(*words)
+            steps._accept(*words)
         return
-    trial, step, following = transient._accept(*words)
+    trial, step, following = steps._accept(*words)
     assert trial.state is state
     assert trial.error == 0.1
     assert step == tried[-1] <= 1e-3 * tried[0] < tried[-2]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 import signal
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import connection, get_context
 from queue import Empty, SimpleQueue
@@ -145,7 +145,8 @@ class _Worker:
         """Send a call to the process; one that cannot be sent fails."""
         self._call = call
         try:
-            self.pipe.send((call.function, call.arguments, call.keywords))
+            with _broken_pipes_as_errors():
+                self.pipe.send((call.function, call.arguments, call.keywords))
         except OSError:  # the process has just died
             self.receive()
         except Exception as error:
@@ -171,7 +172,7 @@ class _Worker:
 
     def end(self) -> None:
         """End the process."""
-        with suppress(OSError):
+        with suppress(OSError), _broken_pipes_as_errors():
             self.pipe.send(None)
         self.process.join(1.0)
         self.process.kill()
@@ -220,4 +221,19 @@ def _send(pipe, answer: tuple[Any, BaseException | None]) -> None:
         kept = answer[1] or error
         pipe.send((None, ComputationError(f"{type(kept).__name__}: {kept}")))
     finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _broken_pipes_as_errors() -> Iterator[None]:
+    """Raise an error where a pipe is closed at its other end, whoever handles the signal of it.
+
+    PETSc ends the process at SIGPIPE, unless it was started without its handlers.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})
+    try:
+        yield
+    finally:
+        if signal.SIGPIPE in signal.sigpending():
+            signal.sigtimedwait({signal.SIGPIPE}, 0)
         signal.pthread_sigmask(signal.SIG_SETMASK, before)

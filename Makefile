@@ -6,7 +6,7 @@ RUFF = $(CACHE)/ruff-0.14/bin/ruff
 WHOLE = THERMOWEAR_WITH=studies $(ENV)
 PYTEST = OMP_NUM_THREADS=1 $(WHOLE) python3 -m pytest
 
-.PHONY: help demo demos gallery docs test verify test-next lint types image meshes clean
+.PHONY: help demo demos gallery docs verification test verify test-next lint types image meshes clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 12
@@ -28,6 +28,9 @@ gallery: ## demos/README.md: what each demo case shows, with pictures
 docs: ## the site in docs/_build/html; warnings are errors
 	THERMOWEAR_WITH=docs $(ENV) python3 -m sphinx -W --keep-going -q -d docs/_build/doctrees docs docs/_build/html
 	@echo docs/_build/html/index.html
+
+verification: ## the numbers of the verification book, docs/verification/checks.json
+	$(ENV) python3 docs/extensions/write_checks.py
 
 test: ## the tests but the slow ones
 	$(PYTEST) -n 2 -m "not slow" --durations=20

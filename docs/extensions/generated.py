@@ -8,9 +8,14 @@ from typing import Any
 
 from .case_keys import key_pages
 from .python_names import python_pages
+from .verification_book import verification_pages
 
 MATHJAX = Path("/usr/share/javascript/mathjax")
-_PLACES = {"reference/keys": key_pages, "reference/python": python_pages}
+_PLACES = {
+    "reference/keys": key_pages,
+    "reference/python": python_pages,
+    "verification": verification_pages,
+}
 
 
 def setup(app) -> dict[str, Any]:

@@ -59,3 +59,16 @@ def commands(page: str) -> list[list[str]]:
     return [
         shlex.split(_PROGRAM.sub("", call), comments=True) for call in calls if _PROGRAM.match(call)
     ]
+
+
+def steps(page: str) -> list[Block]:
+    """Blocks of a tutorial in their order: programs, files and commands with their output."""
+    text = PAGES[page].read_text(encoding="utf-8")
+    found = [(b.start(), b[1], b[2]) for b in _FENCED.finditer(text)]
+    outside = _FENCED.sub(lambda b: re.sub(r"[^\n]", " ", b[0]), text)
+    for line in re.finditer(r"^ {4,6}(\S.*)$", outside, re.MULTILINE):
+        found.append((line.start(), "console", f"$ {line[1]}\n"))
+    return [
+        Block(page, text.count("\n", 0, at) + 1, language, block)
+        for at, language, block in sorted(found)
+    ]

@@ -6,6 +6,7 @@ import math
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict, dataclass, replace
+from functools import wraps
 from typing import Any
 
 import numpy as np
@@ -106,8 +107,13 @@ def printed(quantity: str, computed: float, text: str) -> Check:
 
 
 def identified(id: str, *parts: Checks) -> Checks:
-    """Checks of all parts of a case with its id."""
-    return lambda: (replace(check, id=id) for checks in parts for check in checks())
+    """Checks of all parts of a case with its id, described as the first of them."""
+
+    @wraps(parts[0])
+    def every() -> Iterator[Check]:
+        return (replace(check, id=id) for checks in parts for check in checks())
+
+    return every
 
 
 def all_checks(id: str, checks: Checks) -> list[Check]:

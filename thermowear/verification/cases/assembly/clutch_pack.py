@@ -130,7 +130,7 @@ class Pack:
 
 
 def clutch_pack() -> Iterator[Check]:
-    """Packs of two to sixteen faces."""
+    """Torque and steady wear of packs of two to sixteen faces."""
     for faces in (2, 4, 8, 16):
         yield from pack_checks(Pack(faces))
     yield from pack_checks(Pack(4, heated=False))

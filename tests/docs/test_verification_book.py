@@ -1,0 +1,45 @@
+"""Verification book: every case of `verify`, with problem, source and numbers."""
+
+from __future__ import annotations
+
+import importlib
+import inspect
+import json
+import re
+import sys
+
+import pytest
+
+from thermowear.verification import CASES, SLOW
+
+from .blocks import TOP
+
+BOOK = json.loads((TOP / "docs" / "verification" / "checks.json").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def pages():
+    sys.path.insert(0, str(TOP / "docs"))
+    yield importlib.import_module("extensions.verification_book").verification_pages()
+    sys.path.remove(str(TOP / "docs"))
+
+
+def test_every_case_is_in_the_book(pages):
+    """requirement G2: no case is missing, none is in two places."""
+    names = re.findall(r"^\(verify-([\w-]+)\)=$", "\n".join(pages.values()), re.MULTILINE)
+    assert sorted(names) == sorted({row["id"] for row in BOOK["checks"]})
+    assert set(CASES) - SLOW <= set(names)
+
+
+def test_numbers_are_within_what_is_allowed():
+    """requirement: the book shows what the program asserts, each with its source."""
+    assert len(BOOK["checks"]) > 2000
+    for row in BOOK["checks"]:
+        assert row["error"] <= row["allowed"], row
+        assert row["source"]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_every_case_says_its_problem(name):
+    """requirement: the problem of a case in a sentence."""
+    assert len(inspect.getdoc(CASES[name]) or "") > 30

@@ -65,3 +65,12 @@ def test_a_killed_compilation_is_made_up_for(tmp_path, launcher):
 def test_processes_at_once(tmp_path):
     """requirement: processes that compile the same at once wait for each other, however long."""
     assert results(*(started(tmp_path) for _ in range(3))) == ["0.250000000000\n"] * 3
+
+
+def test_a_cache_that_can_only_be_read(tmp_path):
+    """requirement: forms of a cache without write permission, as of an image, are used."""
+    results(started(tmp_path))
+    lock = tmp_path / "fenics" / "thermowear.lock"
+    lock.unlink()
+    lock.mkdir()  # cannot be opened for writing, by root neither
+    assert results(started(tmp_path)) == ["0.250000000000\n"]

@@ -93,8 +93,13 @@ def patiently(compile: Callable[[], _Compiled], comm: MPI.Comm) -> _Compiled:
 def _lock(kind: int) -> Iterator[None]:
     """Hold the lock of the cache of compiled forms."""
     folder = jit.get_options()["cache_dir"]
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "thermowear.lock").open("a") as file:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        file = (folder / "thermowear.lock").open("a")
+    except OSError:  # a cache that can only be read: nobody compiles into it
+        yield
+        return
+    with file:
         fcntl.flock(file, kind)
         yield
 

@@ -6,7 +6,7 @@ RUFF = $(CACHE)/ruff-0.14/bin/ruff
 WHOLE = THERMOWEAR_WITH=studies $(ENV)
 PYTEST = OMP_NUM_THREADS=1 $(WHOLE) python3 -m pytest
 
-.PHONY: help demo demos gallery docs verification test verify test-next lint types image meshes clean
+.PHONY: help demo demos gallery docs links verification test verify test-next lint types package image meshes clean
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):[^#]*## /\1\t/p' Makefile | expand -t 12
@@ -27,7 +27,11 @@ gallery: ## demos/README.md: what each demo case shows, with pictures
 
 docs: ## the site in docs/_build/html; warnings are errors
 	THERMOWEAR_WITH=docs $(ENV) python3 -m sphinx -W --keep-going -q -d docs/_build/doctrees docs docs/_build/html
+	@$(ENV) python3 docs/extensions/check_links.py docs/_build/html
 	@echo docs/_build/html/index.html
+
+links: ## the links of the site to other sites, asked one by one (needs the internet)
+	THERMOWEAR_WITH=docs $(ENV) python3 -m sphinx -b linkcheck -q -d docs/_build/doctrees docs docs/_build/links
 
 verification: ## the numbers of the verification book, docs/verification/checks.json
 	$(ENV) python3 docs/extensions/write_checks.py
@@ -44,10 +48,13 @@ test-next: ## the tests with the dolfinx of Debian unstable
 lint: $(RUFF) ## ruff, and shellcheck where it is installed
 	$(RUFF) check .
 	$(RUFF) format --check .
-	if command -v shellcheck >/dev/null; then shellcheck scripts/env scripts/image; fi
+	if command -v shellcheck >/dev/null; then shellcheck scripts/env scripts/image scripts/package; fi
 
 types: ## mypy
 	$(WHOLE) mypy
+
+package: ## the wheel, in build/package, tried in a clean environment
+	scripts/package
 
 image: ## the container image thermowear
 	scripts/image

@@ -27,7 +27,7 @@ source_suffix = {".md": "markdown"}
 exclude_patterns = ["_build", "extensions"]
 nitpicky = False
 
-myst_enable_extensions = ["colon_fence", "dollarmath", "attrs_inline"]
+myst_enable_extensions = ["colon_fence", "dollarmath", "attrs_block", "attrs_inline"]
 myst_heading_anchors = 4
 myst_links_external_new_tab = False
 
@@ -48,6 +48,9 @@ html_theme_options = {
     "navbar_align": "left",
     "footer_start": ["copyright"],
     "footer_end": [],
+}
+html_sidebars = {
+    page: [] for page in ("start", "performance", "comparison", "gallery", "changelog")
 }
 html_show_sphinx = False
 copyright = "the thermowear authors, MIT licence"

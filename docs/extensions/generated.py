@@ -8,7 +8,7 @@ from typing import Any
 
 from .case_keys import key_pages
 from .python_names import python_pages
-from .verification_book import verification_pages
+from .verification_book import draw_book, verification_pages
 
 MATHJAX = Path("/usr/share/javascript/mathjax")
 _PLACES = {
@@ -21,6 +21,7 @@ _PLACES = {
 def setup(app) -> dict[str, Any]:
     """Register the pages with Sphinx."""
     app.connect("builder-inited", write_pages)
+    app.connect("builder-inited", draw_pictures)
     app.connect("build-finished", copy_mathjax)
     return {"parallel_read_safe": True}
 
@@ -38,6 +39,11 @@ def write_pages(app) -> None:
             path = folder / f"{name}.md"
             if not path.exists() or path.read_text(encoding="utf-8") != text:
                 path.write_text(text, encoding="utf-8")
+
+
+def draw_pictures(app) -> None:
+    """Draw the pictures of the verification book that are out of date."""
+    draw_book(Path(app.srcdir) / "verification" / "pictures")
 
 
 def copy_mathjax(app, failure) -> None:

@@ -156,6 +156,15 @@ def test_a_wrong_choice_of_workers(words, said, capsys):
     assert not Path("s").exists()
 
 
+def test_a_scheduler_file_that_never_comes(capsys, monkeypatch):
+    """requirement: a wrong name of the scheduler's file ends in one line."""
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("thermowear.app.batch.executors._START", 0.2)
+    words = ["--executor", "dask", "--scheduler", "none.json"]
+    assert main(["sweep", *WORDS, *words, "-o", "s"]) == 1
+    assert "--scheduler none.json: no such file" in capsys.readouterr().err
+
+
 def test_any_executor_from_python():
     """requirement: `tw.sweep` takes any executor of `concurrent.futures`."""
     case = tw.load(LEVER, ("mesh.degree=2", "mesh.elements=3", 'motion.velocity="50 mm/s"'))

@@ -1,4 +1,4 @@
-"""Blocks of the documents: fragments of cases, commands, programs."""
+"""Blocks of the documents: fragments of cases, programs, commands with what they print."""
 
 from __future__ import annotations
 
@@ -10,22 +10,30 @@ from pathlib import Path
 TOP = Path(__file__).parents[2]
 PAGES = {
     path.relative_to(TOP).as_posix(): path
-    for path in (TOP / "README.md", *sorted((TOP / "docs").rglob("*.md")))
+    for path in (
+        TOP / "README.md",
+        TOP / "CONTRIBUTING.md",
+        *sorted((TOP / "docs").rglob("*.md")),
+        TOP / "demos/README.md",
+    )
     if "_build" not in path.parts and "keys" not in path.parts and path.parent.name != "python"
 }
 _FENCED = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+_INDENTED = re.compile(r"(?:^ {4,}\S.*\n)+", re.MULTILINE)
+_START = re.compile(r"^(?:\$ |thermowear |python3 |scripts/|make |pip |docker |sudo )")
 _PROGRAM = re.compile(r"^(?:scripts/env )?(?:python3 -m )?thermowear ")
 
 
 @dataclass(frozen=True)
 class Block:
-    """Fenced block of a page.
+    """Block of a page.
 
     Attributes
     ----------
     page : str
     line : int
     language : str
+        Of a fenced block; `console` for an indented one.
     text : str
     """
 
@@ -38,37 +46,59 @@ class Block:
     def id(self) -> str:
         return f"{self.page}:{self.line}"
 
+    @property
+    def file(self) -> str | None:
+        """Name of the file that the block is, in its first line."""
+        found = re.match(r"# (\S+\.(?:py|toml))\n", self.text)
+        return found and found[1]
 
-def fenced(language: str) -> list[Block]:
-    """Fenced blocks of a language, of all pages."""
-    found = []
-    for page, path in PAGES.items():
-        text = path.read_text(encoding="utf-8")
-        for block in _FENCED.finditer(text):
-            line = text.count("\n", 0, block.start()) + 1
-            if block[1] == language:
-                found.append(Block(page, line, language, block[2]))
-    return found
-
-
-def commands(page: str) -> list[list[str]]:
-    """Arguments of the calls of the program in the indented blocks of a page."""
-    text = PAGES[page].read_text(encoding="utf-8").replace("\\\n", " ")
-    lines = re.findall(r"^    (\S.*)$", text, re.MULTILINE)
-    calls = [line.removeprefix("$ ") for line in lines]
-    return [
-        shlex.split(_PROGRAM.sub("", call), comments=True) for call in calls if _PROGRAM.match(call)
-    ]
+    def calls(self) -> list[Call]:
+        """Commands of a console, in their order; other lines are what the last one prints."""
+        if self.language != "console":
+            return []
+        found: list[Call] = []
+        for line in self.text.replace("\\\n", " ").splitlines():
+            if _START.match(line):
+                found.append(Call(line.removeprefix("$ "), []))
+            elif found:
+                found[-1].output.append(line)
+        return found
 
 
-def steps(page: str) -> list[Block]:
-    """Blocks of a tutorial in their order: programs, files and commands with their output."""
+@dataclass(frozen=True)
+class Call:
+    """Command with the lines that it prints, as far as the page shows them."""
+
+    command: str
+    output: list[str]
+
+    def arguments(self) -> list[str] | None:
+        """Arguments of a call of the program; None for other commands."""
+        if not _PROGRAM.match(self.command):
+            return None
+        words = shlex.split(_PROGRAM.sub("", self.command), comments=True)
+        return words[: words.index(">")] if ">" in words else words
+
+
+def blocks(page: str) -> list[Block]:
+    """Blocks of a page in their order."""
     text = PAGES[page].read_text(encoding="utf-8")
     found = [(b.start(), b[1], b[2]) for b in _FENCED.finditer(text)]
     outside = _FENCED.sub(lambda b: re.sub(r"[^\n]", " ", b[0]), text)
-    for line in re.finditer(r"^ {4,6}(\S.*)$", outside, re.MULTILINE):
-        found.append((line.start(), "console", f"$ {line[1]}\n"))
+    for block in _INDENTED.finditer(outside):
+        lines = re.sub(r"^ {4,6}(?=\S)", "", block[0], flags=re.MULTILINE)
+        found.append((block.start(), "console", lines))
     return [
         Block(page, text.count("\n", 0, at) + 1, language, block)
         for at, language, block in sorted(found)
     ]
+
+
+def fenced(language: str) -> list[Block]:
+    """Blocks of a language, of all pages."""
+    return [block for page in PAGES for block in blocks(page) if block.language == language]
+
+
+def calls(page: str) -> list[Call]:
+    """Commands of a page in their order."""
+    return [call for block in blocks(page) for call in block.calls()]

@@ -43,3 +43,16 @@ def test_numbers_are_within_what_is_allowed():
 def test_every_case_says_its_problem(name):
     """requirement: the problem of a case in a sentence."""
     assert len(inspect.getdoc(CASES[name]) or "") > 30
+
+
+def test_pictures(pages, tmp_path):
+    """requirement: each case has a picture of its errors; pictures of systems exist."""
+    book = importlib.import_module("extensions.verification_book")
+    book.draw_book(tmp_path)
+    text = "\n".join(pages.values())
+    drawn = re.findall(r"\(pictures/([\w-]+)\.svg\)", text)
+    assert sorted(drawn) == sorted(path.stem for path in tmp_path.glob("*.svg"))
+    assert all("</svg>" in path.read_text() for path in tmp_path.glob("*.svg"))
+    systems = re.findall(r"\(\.\./\.\./(demos/pictures/[\w-]+\.png)\)", text)
+    assert len(systems) > 20
+    assert all((TOP / name).exists() for name in systems)

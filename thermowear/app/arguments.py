@@ -236,7 +236,9 @@ def _add_workers(command: argparse.ArgumentParser) -> None:
         "--processes", metavar="N", type=_positive, help="default: number of cores, at most"
     )
     command.add_argument(
-        "--scheduler", metavar="ADDRESS", help="of Dask; default: workers on this machine"
+        "--scheduler",
+        metavar="ADDRESS",
+        help="of Dask, or its scheduler file; default: workers on this machine",
     )
 
 

@@ -6,6 +6,7 @@ Exit codes: 0 done, 1 invalid case or command line, 2 failed computation, 130 in
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import signal
 import sys
@@ -20,6 +21,8 @@ from .arguments import parser
 from .verifying import verify
 
 _INTERRUPTED = 130
+_OF_THE_SYSTEM = {"basix", "dolfinx", "ffcx", "gmsh", "mpi4py", "petsc4py", "ufl"}
+"""Packages that `pip install` does not bring."""
 _DELIVERY_TIME = 1.0  # s; launchers may drop messages written just before a failing process ends
 
 
@@ -35,10 +38,25 @@ def main(arguments: list[str] | None = None) -> int:
             return _report_errors(error.exit_code, *error.faults)
         except ComputationError as error:
             return _report_errors(error.exit_code, str(error))
+        except ModuleNotFoundError as error:
+            if _package(error) not in _OF_THE_SYSTEM:
+                raise
+            return _report_errors(CaseError.exit_code, _needed(error))
         except KeyboardInterrupt as error:
             return _report_errors(_INTERRUPTED, str(error) or "interrupted")
         except BrokenPipeError:
             return 0
+
+
+def _package(error: ModuleNotFoundError) -> str:
+    return (error.name or "").partition(".")[0]
+
+
+def _needed(error: ModuleNotFoundError) -> str:
+    return (
+        f"the Python module {_package(error)} is not installed: dolfinx, PETSc, MPI and gmsh come "
+        "from the system, by apt, conda, a container or scripts/env (README, Quick start)"
+    )
 
 
 def _note_hook(otherwise):
@@ -74,6 +92,8 @@ def _is_reporting_rank() -> bool:
     """
     if "mpi4py.MPI" not in sys.modules and _launched_processes() == 1:
         return True
+    if importlib.util.find_spec("mpi4py") is None:
+        return True
     from mpi4py import MPI
 
     return MPI.COMM_WORLD.rank == 0
@@ -102,7 +122,7 @@ def _run(chosen) -> int:
     comm = MPI.COMM_WORLD
     try:
         return run_session(chosen, comm, time.perf_counter() - began)
-    except (CaseError, ComputationError):
+    except (CaseError, ComputationError, ModuleNotFoundError):
         raise
     except Exception:
         traceback.print_exc()

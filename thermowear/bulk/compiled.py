@@ -48,13 +48,14 @@ _Compiled = TypeVar("_Compiled")
 
 def compiled(form):
     """Compile a UFL form for assembly; reused from the cache on disk after the first time."""
-    options = {"cffi_extra_compile_args": _FLAGS, "timeout": _PATIENCE}
+    folder = _cache() / form.signature()[:2]
+    options = {"cffi_extra_compile_args": _FLAGS, "timeout": _PATIENCE, "cache_dir": folder}
     return patiently(lambda: fem.form(form, jit_options=options), _comm_of(form))
 
 
 def compiled_expression(expression: ufl.core.expr.Expr, points, comm: MPI.Comm) -> fem.Expression:
     """Compile a UFL expression for its values at points of the reference cell."""
-    options = {"timeout": _PATIENCE}
+    options = {"timeout": _PATIENCE, "cache_dir": _cache() / "expressions"}
     return patiently(lambda: fem.Expression(expression, points, jit_options=options), comm)
 
 
@@ -89,10 +90,17 @@ def patiently(compile: Callable[[], _Compiled], comm: MPI.Comm) -> _Compiled:
         return compile()
 
 
+def _cache() -> Path:
+    """Folder of compiled forms. FFCx lists the whole folder of a form to load it: with thousands of
+    them (2 ms each time) in one, that takes a fifth of a short run, so that each has few.
+    """
+    return jit.get_options()["cache_dir"]
+
+
 @contextlib.contextmanager
 def _lock(kind: int) -> Iterator[None]:
     """Hold the lock of the cache of compiled forms."""
-    folder = jit.get_options()["cache_dir"]
+    folder = _cache()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         file = (folder / "thermowear.lock").open("a")

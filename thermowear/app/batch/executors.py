@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Literal
 
 from ...errors import CaseError
@@ -69,7 +71,8 @@ class Choice:
     processes : int or None
         Number of processes; None: of the cores, but no more than are worth their start.
     scheduler : str or None
-        Address of a scheduler of Dask; None starts workers on this machine.
+        Address of a scheduler of Dask, or the file (`.json`) that it writes; None starts workers on
+        this machine.
 
     Raises
     ------
@@ -138,14 +141,26 @@ def _dask(scheduler: str | None, count: int) -> Iterator[Workers]:
         ) from None
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     with ExitStack() as stack:
-        address: Any = scheduler
+        where: dict[str, Any] = {"address": scheduler}
         if scheduler is None:
             own = {"n_workers": count, "threads_per_worker": 1, "dashboard_address": None}
-            address = stack.enter_context(LocalCluster(**own))
+            where = {"address": stack.enter_context(LocalCluster(**own))}
+        elif scheduler.endswith(".json"):
+            where = {"scheduler_file": _written(Path(scheduler))}
         try:
-            client = stack.enter_context(Client(address, timeout=_START))
+            client = stack.enter_context(Client(**where, timeout=_START))
             client.wait_for_workers(1, timeout=_START)
         except (OSError, TimeoutError) as error:
             raise CaseError(f"--scheduler {scheduler}: no workers there: {error}") from None
         executor = stack.enter_context(client.get_executor())
         yield Workers(executor, len(client.nthreads()))
+
+
+def _written(file: Path) -> str:
+    """Name of a scheduler's file, once it is there: Dask would wait for it without end."""
+    end = time.monotonic() + _START
+    while not file.exists():
+        if time.monotonic() > end:
+            raise CaseError(f"--scheduler {file}: no such file after {_START} s")
+        time.sleep(0.1)
+    return str(file)

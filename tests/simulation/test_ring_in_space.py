@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from thermowear.errors import ComputationError
 from thermowear.verification.cases.steady.ring_in_space import (
     FACE_ENDS,
     RUNNING_IN,
@@ -59,13 +58,21 @@ def test_hot_spots_round_the_ring_come_first(coarse):
     assert max(sizes[0], sizes[2]) < 0.05 * sizes[1]
 
 
-def test_no_equilibrium_beyond_the_critical_speed_of_hot_spots(coarse):
-    """requirement: running-in proceeds below it; between it and the axisymmetric critical speed
-    it stops with that reason, though the axisymmetric model runs.
+def unevenness(result):
+    """Largest over smallest pressure round the middle of the ring."""
+    i = result.interface
+    middle = np.abs(np.hypot(i.x, i.y) - 0.07) < 0.01
+    return i.pressure[middle].max() / max(i.pressure[middle].min(), 1e-6 * i.pressure.max())
+
+
+def test_hot_spots_beyond_their_critical_speed(coarse):
+    """requirement: running-in keeps the symmetry of rotation below the critical speed of hot spots;
+    between it and the axisymmetric one hot spots carry the load, though the axisymmetric model runs.
     """
-    assert in_space(coarse, STEADY, running_in(BELOW)).history[-1].time == 1000.0
-    with pytest.raises(ComputationError, match=r"no equilibrium.*critical sliding speed"):
-        in_space(coarse, STEADY, running_in(BETWEEN))
+    below, between = (in_space(coarse, STEADY, running_in(v)) for v in (BELOW, BETWEEN))
+    assert below.history[-1].time == between.history[-1].time == 1000.0
+    assert unevenness(below) < 1.3
+    assert unevenness(between) > 10.0
     flat = run_starter(STEADY, "analysis={type='transient', end_time='1000 s', tolerance=1e-3}")
     assert flat.history[-1].time == 1000.0
 

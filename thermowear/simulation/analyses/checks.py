@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
 from ...errors import CaseError, ComputationError
@@ -22,6 +25,8 @@ _BACK = 1e-9
 """Rounding tolerance of the position, relative to the size of the face."""
 _STEEP = -0.75
 """Largest cosine between the outward normals where faces press; up to -0.5 they are paired."""
+_MOLTEN = 3273.15
+"""Temperature at which hardly any material is solid [K]."""
 _NO_CLOSURE = 1e-9
 """Relative closure of the gap, below which a motion counts as one that no contact resists."""
 
@@ -103,6 +108,18 @@ def inclined_faces(system: System, pressure: np.ndarray) -> str | None:
     return (
         f"the contact reaches points where the unloaded faces are inclined by {angle:.0f} degrees "
         "to each other; strains are taken to be small, and from 60 degrees on faces are not paired"
+    )
+
+
+def too_hot(summary: Mapping[str, Any]) -> str | None:
+    """Note on a computed temperature at which no body is solid; None if there is none."""
+    found = (summary.get(key) for key in ("max_temperature_K", "peak_temperature_K"))
+    highest = max((temperature for temperature in found if temperature is not None), default=0.0)
+    if highest < _MOLTEN:
+        return None
+    return (
+        f"highest temperature {highest - 273.15:.4g} °C: beyond the melting point of nearly all "
+        "materials; check load, speed, friction and cooling"
     )
 
 

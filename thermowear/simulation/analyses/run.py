@@ -37,6 +37,7 @@ from .checks import (
     open_contact,
     require_one_way,
     require_support,
+    too_hot,
 )
 from .positioning import prepare
 from .stability import stability
@@ -150,6 +151,7 @@ def analyse(
     found: list[ComputationError | str | None] = [
         inclined_faces(end.system, end.contact.pressure),
         deep_wear(system, analysis, end.interface),
+        too_hot(result.summary),
     ]
     if result.stopped is None:
         found = [

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from ...contact.solvers.signorini import (
     SignoriniSolution,
     solve_contact,
 )
+from ...contact.solvers.static_stability import is_stable
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
 from ...errors import ComputationError
@@ -21,11 +23,14 @@ from ..system.system import System
 from .contact_solver import ContactSolution
 
 _ITERATIONS = 60
+_FIRST_PART, _LEAST_PART = 1 / 8, 1 / 256
+"""First and smallest step of the thermal distortion in a continuation."""
 _KEPT = 8
 """Number of compliances and factors kept: of the stages of a step and its halves."""
 _HOT = (
     "with friction heat this happens beyond the critical sliding speed (thermoelastic "
-    "instability): reduce the speed, or the expansion, or the friction"
+    "instability), or where the elements are too large for a contact zone that heat makes small: "
+    "reduce the speed, the expansion or the friction, or refine the mesh at the contact"
 )
 _LOCKED = (
     "friction along the faces locks body 1 or tips it over an edge: lower contact.friction, "
@@ -97,14 +102,42 @@ class CondensedMethod:
             return self._solved(bodies, edge, compliance, thermal_gap, gap, slope, guess, load)
         for _ in range(_ITERATIONS):
             thermal, opening = heat.coupling(conditions, bodies.basis)
-            both = self._sums.of(compliance, thermal)
-            guess = self._solved(bodies, edge, both, opening, gap, slope, guess, load)
+            solved = partial(self._solved, bodies, edge, slope=slope, gap=gap, load=load)
+            try:
+                both = self._sums.of(compliance, thermal)
+                guess = solved(both, opening, guess=guess)
+            except NoEquilibrium:
+                guess = self._with_growing_heat(solved, compliance, thermal, opening)
             if heat.converged(conditions, guess.pressure):
                 return guess
         raise ComputationError(
             "contact: the iteration for pressure and temperatures with temperature-dependent "
             "conductivity or expansion did not converge; reduce the speed"
         )
+
+    def _with_growing_heat(
+        self, solved, compliance: np.ndarray, thermal: np.ndarray, opening: np.ndarray
+    ) -> ContactSolution:
+        """Contact by continuation from bodies without distortion by friction heat.
+
+        Heat shrinks a contact zone, which active sets from full contact, or from another speed, may
+        miss; Lemke's method is not sure to end where the compliance is no positive operator. The
+        continuation may pass a critical speed and go on with a state that no perturbation leaves.
+        """
+        guess, part, step = solved(compliance, opening, guess=None), 0.0, _FIRST_PART
+        while part < 1.0:
+            grown = min(part + step, 1.0)
+            try:
+                guess = solved(compliance + grown * thermal, opening, guess=guess)
+            except NoEquilibrium:
+                step /= 2
+                if step < _LEAST_PART:
+                    raise
+            else:
+                part = grown
+        if not is_stable(compliance, thermal, self._contact.modes, guess.warm_start.active):
+            raise NoEquilibrium("contact: no equilibrium found that small perturbations leave as it is")
+        return guess
 
     def point_compliance(self, points) -> np.ndarray:
         space = self._space(self._contact, points)

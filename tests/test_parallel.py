@@ -79,7 +79,7 @@ def slow(*values):
             DEMOS / "cylinder_stick_slip.toml",
             ["contact.method=nitsche", "mesh={degree=2, elements=16}", "analysis.increments=1"],
         ),
-        (
+        slow(
             DEMOS / "sphere_on_block_coated.toml",
             ["mesh.elements=20", "analysis.end_time=100 s", "analysis.output_times=['1 s']"],
         ),

@@ -14,7 +14,7 @@ PRESSED = np.ones((3, 1))
 @pytest.mark.parametrize(("speed", "stable"), [(0.99, True), (1.01, False), (-5.0, True)])
 def test_rods_that_share_a_load(speed, stable):
     """
-    requirement: rods of compliance c beside each other under one rigid plate, each longer by h times
+    requirement: rods of compliance c beside each other under a rigid plate, each longer by h times
     its load: the load goes to one of them where h > c.
     """
     c, h = 2e-9 * np.eye(3), -2e-9 * np.eye(3)

@@ -1,10 +1,12 @@
 """The environment: scripts/env chooses and passes on, and the package list covers the imports."""
 
 import ast
+import hashlib
 import itertools
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,12 +15,15 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 LISTS = ("packages", "packages.studies")
-PACKAGES = [
-    words[0]
-    for name in LISTS
-    for line in (ROOT / "scripts" / name).read_text().splitlines()
-    if (words := line.partition("#")[0].split())
-]
+
+
+def listed(*names):
+    """Packages of lists in `scripts/`."""
+    lines = (line for name in names for line in (ROOT / "scripts" / name).read_text().splitlines())
+    return [words[0] for line in lines if (words := line.partition("#")[0].split())]
+
+
+PACKAGES = listed(*LISTS)
 # modules that come with a package of another name
 PACKAGE_OF = dict.fromkeys(["basix", "ffcx", "ufl"], "python3-dolfinx") | {
     "PIL": "python3-pil",
@@ -140,6 +145,68 @@ def test_container_sees_project_and_directory_of_the_caller(tmp_path):
     assert ("--user", f"{os.getuid()}:{os.getgid()}") in options
     assert ("--env", f"PYTHONPATH={ROOT}") in options
     assert asked[-4:] == [image, "python3", "-c", "two words"]
+
+
+def asked_of_root(tmp_path, **variables):
+    """What the root route asks to be run, with trees of all packages in the cache."""
+    key = [*listed("packages")]
+    if variables.get("THERMOWEAR_WITH"):
+        key += listed(f"packages.{variables['THERMOWEAR_WITH']}")
+    key += variables.get("THERMOWEAR_EXTRA_PACKAGES", "").split()
+    digest = hashlib.sha256(("\n".join(sorted(set(key))) + "\n").encode()).hexdigest()[:12]
+    tree = f"root-{variables.get('THERMOWEAR_SUITE', 'trixie')}-{digest}"
+    (tmp_path / "cache" / "thermowear" / tree).mkdir(parents=True)
+    path = fake(fake(tmp_path / "bin", "apt-get", "exit 1"), "unshare", """printf '%s\\n' "$@" """)
+    environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path / "cache")} | variables
+    environment["PATH"] = f"{path}:{environment['PATH']}"
+    done = subprocess.run(
+        [ROOT / "scripts/env", "echo", "two words"],
+        env=environment,
+        text=True,
+        capture_output=True,
+        timeout=60,
+    )
+    assert done.returncode == 0, done.stderr
+    return tree, done.stdout.splitlines()
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root enters a tree")
+@pytest.mark.parametrize(
+    "variables",
+    [
+        {"THERMOWEAR_ENV": "root"},
+        {"THERMOWEAR_ENV": "root", "THERMOWEAR_WITH": "studies"},
+        {"THERMOWEAR_ENV": "root", "THERMOWEAR_WITH": "docs"},
+        {"THERMOWEAR_EXTRA_PACKAGES": "python3-getfem"},  # a tree although python3 has it all
+        {"THERMOWEAR_SUITE": "unstable", "THERMOWEAR_WITH": "studies"},
+    ],
+    ids=lambda variables: " ".join(variables.values()),
+)
+def test_root_enters_the_tree_of_its_packages(tmp_path, variables):
+    """requirement: each list of packages and each suite has a tree of its own, made once."""
+    tree, asked = asked_of_root(tmp_path, **variables)
+    assert asked[:3] == ["--mount", "--propagation", "private"]
+    inside = asked.index("--inside")
+    assert asked[inside + 1] == str(tmp_path / "cache" / "thermowear" / tree)
+    assert asked[inside + 2 :] == ["echo", "two words"]
+
+
+def test_without_any_route_the_message_names_all(tmp_path):
+    """requirement: no packages, no engine, no Debian: what to do, in one message."""
+    tools = "bash cat cut dirname env grep mkdir sed sha256sum sort timeout tr".split()
+    path = fake(tmp_path / "bin", "python3", "exit 1")
+    for tool in tools:
+        (path / tool).symlink_to(shutil.which(tool))
+    done = subprocess.run(
+        [ROOT / "scripts/env", "true"],
+        env={"PATH": str(path), "HOME": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path)},
+        text=True,
+        capture_output=True,
+        timeout=60,
+    )
+    assert done.returncode == 1
+    for remedy in ("scripts/packages", "docker or podman", "as root"):
+        assert remedy in done.stderr
 
 
 def test_dockerfile_reads_the_list():

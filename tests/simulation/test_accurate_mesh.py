@@ -47,6 +47,7 @@ def test_the_largest_pressure_of_a_line_contact(accuracy):
     assert result.summary["max_pressure_Pa"] == pytest.approx(exact.peak, rel=accuracy / 100)
 
 
+@pytest.mark.slow
 def test_the_shape_of_a_hot_ring():
     """requirement: the steady worn shape to 1 % of its range, against a fine mesh."""
     case = with_accurate_mesh(asking("annular-punch", "1 %"))

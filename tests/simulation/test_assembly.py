@@ -133,7 +133,9 @@ def test_other_units():
 
 
 @needs_mpirun
-@pytest.mark.parametrize("kind", marked_slow(assembly_on_ranks.KINDS, "by region", "coated"))
+@pytest.mark.parametrize(
+    "kind", marked_slow(assembly_on_ranks.KINDS, "by region", "coated", "quasi-steady")
+)
 def test_two_ranks(tmp_path, kind):
     """requirement: two ranks give the running-in of the serial run, to 1e-8."""
     expected = assembly_on_ranks.computed(kind)

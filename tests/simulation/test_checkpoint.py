@@ -119,6 +119,7 @@ def assert_the_same(one, other):
             ("mesh.elements=4", "analysis.increments=2", "wear.cycles=200")
             + ("analysis.output_times=['0.0625 s']",),
             id="fretting-in-space",
+            marks=pytest.mark.slow,
         ),
         pytest.param(
             DEMOS / "punch_on_strip_reciprocating.toml",

@@ -7,6 +7,7 @@ from thermowear.bulk.heat.path_solver import PathSolver
 from thermowear.bulk.multigrid_solver import MultigridSolver
 
 from ..conftest import DEMOS
+from ..slow import marked_slow
 from ..test_parallel import pytestmark as needs_mpirun
 from ..test_parallel import summaries
 from .turning_disk import turning, turning_case
@@ -14,7 +15,7 @@ from .turning_disk import turning, turning_case
 ITERATIVE = {"mesh.solver": "multigrid"}
 
 
-@pytest.mark.parametrize("turned", [1, -1])
+@pytest.mark.parametrize("turned", marked_slow([1, -1], -1))
 @pytest.mark.parametrize("peclet", [1e3, 1e5])
 def test_iterations_do_not_depend_on_the_speed(peclet, turned, monkeypatch):
     """requirement: temperatures of a factor, in as few iterations in both senses at any speed."""

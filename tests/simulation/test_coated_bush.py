@@ -71,7 +71,7 @@ def test_volumes_over_coefficients_are_force_times_distance(friction, sense):
     assert volumes == pytest.approx(known, rel=1e-9, abs=0.0)
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.1])
+@pytest.mark.parametrize("friction", marked_slow([0.0, 0.1], 0.0))
 def test_the_coating_is_worn_through_when_the_closed_form_says(friction):
     """requirement: rigid bodies; elastic ones deform by a tenth of the coating's thickness."""
     bush = CoatedBush(R, 20e-3, 60e-6, THICKNESS, COATING, SUBSTRATE, FORCE, friction)

@@ -88,6 +88,7 @@ def test_ball_by_other_methods(method):
     passed(SHORT.compared(SHORT.run(*COARSE, f"contact.method={method}"), "", 0.06))
 
 
+@pytest.mark.slow
 def test_ball_on_moved_meshes():
     """
     requirement: layers are measured by the whole depth of each point, wherever the mesh is.

@@ -104,7 +104,12 @@ def worn(method, **analysis):
 
 
 @pytest.mark.parametrize(
-    "analysis", [{"cycles": 1}, {"cycles": 40, "jump": 20}, {"cycles": 8, "tolerance": 0.1}]
+    "analysis",
+    [
+        {"cycles": 1},
+        {"cycles": 40, "jump": 20},
+        pytest.param({"cycles": 8, "tolerance": 0.1}, marks=pytest.mark.slow),
+    ],
 )
 def test_wear_and_cycle_jumps(analysis):
     """requirement: volumes of the condensed method to 1e-3, k/mu times the energy to 1e-9, and a

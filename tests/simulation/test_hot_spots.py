@@ -62,7 +62,7 @@ def test_thick_layer_on_insulating_pads():
         assert rows[1, symmetry].drift == pytest.approx(0.0, abs=1e-6)
 
 
-@pytest.mark.parametrize("m", [41.2, 125.4])
+@pytest.mark.parametrize("m", [pytest.param(41.2, marks=pytest.mark.slow), 125.4])
 def test_layer_between_half_planes(m):
     """requirement E1: critical speed and drift of the closed form, both symmetries, 1e-3."""
     speeds = layer.critical(layer.THICKNESS, [m])
@@ -221,6 +221,7 @@ def test_the_first_mode_keeps_contact_without_shear(found):
     assert found.summary["first_hot_spots_drift_m_per_s"] == pytest.approx(drift, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_ranks(tmp_path):
     """requirement: the same critical speeds on two ranks."""
     expected = hot_spots_on_ranks.computed_modes()

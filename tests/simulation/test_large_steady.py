@@ -24,6 +24,7 @@ from thermowear.simulation.system.building import build
 from thermowear.timer import Phases
 
 from ..contact.solids import COMM, HEIGHTS, SIZE
+from ..slow import marked_slow
 from ..test_parallel import thermowear
 from . import multigrid_on_ranks
 from .hot_solids import COOLING, FORCE, BlockMeshes, hot_blocks
@@ -244,7 +245,7 @@ def test_the_solver_in_a_case_file():
 
 
 @pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
-@pytest.mark.parametrize("conductance", ["2e4", "perfect"])
+@pytest.mark.parametrize("conductance", marked_slow(["2e4", "perfect"], "perfect"))
 def test_two_ranks_give_the_serial_numbers(tmp_path, conductance):
     """requirement: two ranks give the interface of the serial run to 1e-8, direct to 1e-6."""
     done = thermowear(2, conductance, tmp_path, module="tests.simulation.multigrid_on_ranks")

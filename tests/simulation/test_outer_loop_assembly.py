@@ -169,7 +169,7 @@ def test_thresholds():
     "words",
     [
         ("annular-punch-running-in", "mesh.degree=4", 'analysis.end_time="1000 s"', *SHORT),
-        ("annular-punch", *HEAT),
+        pytest.param(("annular-punch", *HEAT), marks=pytest.mark.slow),
     ],
     ids=["cold", "in time"],
 )
@@ -192,6 +192,7 @@ def test_a_pair_with_a_named_contact(words):
     assert volumes == pytest.approx(pair, rel=1e-12, abs=0.0)
 
 
+@pytest.mark.slow
 def test_a_pair_written_with_tables_of_contacts(tmp_path):
     """requirement: the starter own-mesh as a case of several bodies gives the same numbers."""
     pair = tomllib.loads(starter_text("own-mesh"))

@@ -66,8 +66,8 @@ def unevenness(result):
 
 
 def test_hot_spots_beyond_their_critical_speed(coarse):
-    """requirement: running-in keeps the symmetry of rotation below the critical speed of hot spots;
-    between it and the axisymmetric one hot spots carry the load, though the axisymmetric model runs.
+    """requirement: running-in keeps the symmetry of rotation below the critical speed of hot
+    spots; between it and the axisymmetric one they carry the load, though that model runs.
     """
     below, between = (in_space(coarse, STEADY, running_in(v)) for v in (BELOW, BETWEEN))
     assert below.history[-1].time == between.history[-1].time == 1000.0

@@ -88,7 +88,7 @@ def computed(meshes, kinematics, rollers, friction, advection="none"):
     return run(replace(chosen, heat=hot), StaticAnalysis("stability"))
 
 
-@pytest.mark.parametrize("advection", ["none", "resolved"])
+@pytest.mark.parametrize("advection", ["none", pytest.param("resolved", marks=pytest.mark.slow)])
 def test_critical_speeds_are_those_of_the_section(advection):
     """requirement: critical speeds, growth rates and frequencies, with and without wear and with
     the heat that the moving body carries, to 1e-6; the shape of the growing mode.

@@ -25,6 +25,7 @@ from thermowear.verification.cases.assembly.layer_instability import (
 from thermowear.verification.cases.assembly.pad_disk_pad import Brake
 
 from ..case.starter import tables
+from ..slow import marked_slow
 
 SPEED, STABILITY = 20.0, {"type": "stability"}
 
@@ -86,7 +87,7 @@ def test_a_pair_as_one_of_several():
         assert one["contacts"]["pad-disk"][key] == pytest.approx(pair[key], rel=1e-9)
 
 
-@pytest.mark.parametrize("half_planes", HALF_PLANES)
+@pytest.mark.parametrize("half_planes", marked_slow(HALF_PLANES, "rigid"))
 def test_a_layer_between_two_half_planes(half_planes):
     """requirement: the critical speeds of all four modes, and their shapes at both contacts."""
     checks = list(layer_checks(half_planes))

@@ -6,7 +6,12 @@ from ..benchmarks.step_walk import CASES, of_a_step
 
 
 @pytest.mark.parametrize(
-    ("name", "most"), [("cold", 10), ("hot", 12), ("temperatures in time", 15)]
+    ("name", "most"),
+    [
+        ("cold", 10),
+        ("hot", 12),
+        pytest.param("temperatures in time", 15, marks=pytest.mark.slow),
+    ],
 )
 def test_a_step_of_wear_visits_few_files(name, most):
     """requirement: a reader follows one accepted step through at most 10, 12, and 15 files.

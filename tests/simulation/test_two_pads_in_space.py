@@ -112,6 +112,7 @@ def test_the_order_of_faces_does_not_matter(meshes):
         np.testing.assert_allclose(two_pads.columns(found)[name], wanted, 0.0, 1e-9 * size)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
 def test_two_ranks_give_the_serial_numbers(meshes, tmp_path):
     """requirement: the hot steady state on two ranks as on one."""

@@ -7,7 +7,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.errors import ComputationError
-from thermowear.simulation.analyses.checks import open_contact
+from thermowear.simulation.analyses.checks import open_contact, too_hot
 from thermowear.simulation.runtime.observer import Observer
 
 from ..case.starter import HERTZ, tables
@@ -69,3 +69,21 @@ def test_a_pressing_force_has_to_be_carried(apart):
     error = open_contact(*apart(punch(force="1 kN")))
     assert isinstance(error, ComputationError)
     assert str(error).startswith("nothing carries the pressing force of 1000 N")
+
+
+def test_temperatures_of_no_solid():
+    """requirement: a highest temperature beyond all solids is noted, at the end or before it."""
+    assert too_hot({}) is too_hot({"max_temperature_K": None}) is None
+    assert too_hot({"max_temperature_K": 2000.0, "peak_temperature_K": 3200.0}) is None
+    found = too_hot({"max_temperature_K": 400.0, "peak_temperature_K": 5273.15})
+    assert found is not None
+    assert found.startswith("highest temperature 5000 °C: beyond the melting point")
+
+
+@pytest.mark.slow
+def test_a_load_that_melts_the_bodies_is_noted():
+    """requirement: the note reaches the observer of a run."""
+    notes = Notes()
+    case = tw.load(tables(), ("mesh.degree=2", "mesh.elements=4", "load.mean_pressure=5 GPa"))
+    tw.run(case, observer=notes)
+    assert any("beyond the melting point" in text for text in notes.texts)

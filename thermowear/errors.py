@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import warnings
 from typing import Any
 
@@ -56,7 +57,17 @@ class CaseNote(UserWarning):
 
 def note(text: str) -> None:
     """Warn about unusual input of a case, attributed to the caller of the calling function."""
+    _release_warnings()
     warnings.warn(CaseNote(text), stacklevel=3)
+
+
+def _release_warnings() -> None:
+    """Show warnings again after ffcx, at its import, has sent them to a logger without handlers."""
+    if getattr(warnings.showwarning, "__module__", "") != logging.__name__:
+        return
+    handlers = (*logging.getLogger("py.warnings").handlers, *logging.getLogger().handlers)
+    if all(isinstance(handler, logging.NullHandler) for handler in handlers):
+        logging.captureWarnings(False)
 
 
 def quoted(value: Any) -> str:

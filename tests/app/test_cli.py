@@ -487,3 +487,15 @@ def test_checks_are_all_that_validate_shows(name):
     done = subprocess.run(words, capture_output=True, text=True, check=True, env=os.environ | paths)
     assert done.stderr == ""
     assert len(done.stdout.splitlines()) == 1
+
+
+@pytest.mark.slow
+def test_a_run_prints_the_notes_on_its_mesh():
+    """requirement: also after the import of ffcx, which takes warnings away from the terminal."""
+    assert main(["init", "own-mesh"]) == 0
+    far = ("--set", 'geometry.length_unit="1 m"', "--set", "mesh.degree=1")
+    words = ("run", "own-mesh.toml", "-o", "far", "--no-pictures", *far)
+    done = subprocess.run(
+        [sys.executable, "-m", "thermowear", *words], capture_output=True, text=True, check=True
+    )
+    assert "note: geometry.length_unit: " in done.stderr

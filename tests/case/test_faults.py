@@ -84,11 +84,16 @@ NAMES = [
         "wear.punch.per",
         "'friction-stress' or 'pressure'",
     ),
-    Bad("no model", {"model": GONE}, "model", "missing"),
+    Bad("no model", {"model": GONE}, "model", "missing; must be 'axisymmetric', 'plane-strain'"),
     Bad("no geometry", {"geometry": GONE}, "geometry", "missing"),
     Bad("no bodies", {"bodies": GONE}, "bodies", "missing"),
-    Bad("no load", {"load": GONE}, "load", "missing"),
-    Bad("no analysis", {"analysis": GONE}, "analysis", "missing"),
+    Bad(
+        "no load",
+        {"load": GONE},
+        "load",
+        "missing; needs one of load.force, load.mean_pressure and load.approach",
+    ),
+    Bad("no analysis", {"analysis": GONE}, "analysis", "missing; needs a type"),
     Bad("size left out", {"geometry.plate_height": GONE}, "geometry.plate_height", "missing"),
 ]
 
@@ -96,7 +101,14 @@ QUANTITIES = [
     Bad("no unit", {YOUNG: "200e9"}, YOUNG, "without a unit"),
     Bad("bare number", {YOUNG: 200e9}, YOUNG, "needs a quantity with its unit"),
     Bad("wrong dimension", {YOUNG: "200 mm"}, YOUNG, "dimension [length]; must be in Pa"),
-    Bad("unreadable unit", {YOUNG: "200 furlongpascal"}, YOUNG, "cannot read"),
+    Bad(
+        "unreadable unit",
+        {YOUNG: "200 furlongpascal"},
+        YOUNG,
+        "cannot read \"200 furlongpascal\": unknown unit 'furlongpascal'; write it like",
+    ),
+    Bad("unit in other letters", {YOUNG: "200 Gpa"}, YOUNG, "unknown unit 'Gpa', perhaps GPa; "),
+    Bad("unit with a letter too many", {YOUNG: "200 N/mmm^2"}, YOUNG, "'mmm', perhaps mm; "),
     Bad("unreadable number", {YOUNG: "two GPa"}, YOUNG, "cannot read"),
     Bad("unit alone", {YOUNG: "GPa"}, YOUNG, "cannot read"),
     Bad("two numbers", {YOUNG: "200 300 GPa"}, YOUNG, "cannot read"),
@@ -306,7 +318,14 @@ MOTIONS = [
     Bad(
         "punch turned", {"motion": TURN}, "motion.angular_velocity", "needs motion.velocity", PUNCH
     ),
-    Bad("punch not moved", {"motion": {}}, "motion.velocity", "missing; plane-strain", PUNCH),
+    Bad(
+        "box turned",
+        {"motion": TURN},
+        "motion.angular_velocity",
+        "not supported; a 3d model needs motion.velocity",
+        "rectangular-punch",
+    ),
+    Bad("punch not moved", {"motion": {}}, "motion.velocity", "missing; a plane-strain", PUNCH),
     Bad(
         "velocity 0",
         {"motion": {"velocity": "0 mm/s"}},
@@ -345,7 +364,7 @@ LOADS = [
     ),
     Bad(
         "mean pressure of a file without an area",
-        {"geometry": FILE, "contact": {}, "load": {"mean_pressure": "1 MPa"}},
+        {"geometry": FILE, "mesh": {}, "contact": {}, "load": {"mean_pressure": "1 MPa"}},
         "load.mean_pressure",
         "no nominal contact area",
         HERTZ,
@@ -670,7 +689,7 @@ METHODS = [
     Bad("positioning yes", {"contact.positioning": "yes"}, "contact.positioning", "true", HERTZ),
     Bad(
         "positioning of a file",
-        {"geometry": FILE},
+        {"geometry": FILE, "mesh": {}},
         "contact.positioning",
         "the mesh of 'file' cannot be moved",
         HERTZ,
@@ -715,7 +734,8 @@ PLANE = [
 def of_file(name: str, key: str, value: Any, path: str, text: str) -> Bad:
     """A fault in the keys of a geometry that is read from a file."""
     geometry = {k: v for k, v in (FILE | {key: value}).items() if v is not GONE}
-    return Bad(name, {"geometry": geometry, "contact": {}}, f"geometry.{path}", text, HERTZ)
+    changes = {"geometry": geometry, "mesh": {}, "contact": {}}
+    return Bad(name, changes, f"geometry.{path}", text, HERTZ)
 
 
 OF_FILES = [
@@ -897,7 +917,7 @@ def test_an_empty_case_names_every_table_it_needs():
     """
     with pytest.raises(tw.CaseError) as caught:
         tw.load({})
-    assert caught.value.faults == [
+    assert [line.split(";")[0] for line in caught.value.faults] == [
         f"{key}: missing" for key in ("model", "geometry", "bodies", "load", "analysis")
     ]
 

@@ -32,6 +32,7 @@ BAD = [
     Bad("pressure as friction", {MU: "p"}, MU, "needs a dimensionless number"),
     Bad("no unit", {MU: "0.3*exp(-v/0.5)"}, MU, "must be dimensionless, found m/s"),
     Bad("degrees", {MU: "0.3 - 1e-4/K*(T - 20 degC)"}, MU, "'degC' is a scale with an offset"),
+    Bad("degrees converted", {MU: "0.3 - 1e-4/K*(T - 40 degC)"}, MU, "in K: 313.15 K"),
     Bad("division by zero", {MU: "0.2 + 1e-3 m/s/v"}, MU, "must be finite"),
     Bad("negative", {MU: "-0.3 + 0*v/(1 m/s)"}, MU, "must be greater than 0"),
     Bad("depth of friction", {MU: "0.3*exp(-depth/(1 um))"}, MU, "'depth' is not a variable"),

@@ -102,7 +102,7 @@ VARIANTS = {
         },
     ),
     "stability": (STEADY, {"analysis": {"type": "stability"}, "wear": GONE}),
-    "file": (HERTZ, {"geometry": FILE, "contact": {}}),
+    "file": (HERTZ, {"geometry": FILE, "mesh": {}, "contact": {}}),
     "every key of a file": (
         HERTZ,
         {
@@ -115,6 +115,7 @@ VARIANTS = {
                 "contact_area": "12 mm^2",
                 "surfaces": {"cylinder_side": "SIDE", "cylinder_face": "FACE"},
             },
+            "mesh": {},
             "contact": {},
             "load": {"mean_pressure": "1 MPa"},
         },

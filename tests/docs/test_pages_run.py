@@ -54,6 +54,7 @@ def executed(script: str, folder, *, fails: bool = False) -> str:
     """Output of a script of bash, both streams; it must succeed, or fail for a wrong case."""
     path = f"{folder / 'bin'}:{os.environ['PATH']}"
     environment = os.environ | {"PYTHONPATH": str(TOP), "PATH": path, "HOME": str(folder)}
+    environment["SLURM_SUBMIT_DIR"] = str(folder)
     done = subprocess.run(
         ["bash", "-euc", script],
         cwd=folder,

@@ -1,12 +1,14 @@
 """Several bodies from a mesh file or a file each: reading, names, and one line for every fault."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
 
 import thermowear as tw
 from thermowear.app.cli import main
+from thermowear.errors import CaseNote
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.geometry.reading.export import write_mesh
 
@@ -304,6 +306,52 @@ def test_glued_faces_touch(tmp_path):
     case = case.model_copy(update={"contacts": {"glue": glued}})
     with pytest.raises(tw.CaseError, match=r"^contacts\.glue\.between: the glued faces lie 1 mm"):
         case.tagged_mesh()
+
+
+def notes_on(case):
+    """Notes on the mesh of a case."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always", CaseNote)
+        tw.load(case).tagged_mesh()
+    return [str(one.message) for one in found]
+
+
+def test_a_lower_body_that_is_pressed(joined):
+    """requirement: the default direction is named where it points away from the contacts."""
+    lower = {
+        "bodies": {"pad": STEEL | {"fixed": "back"}, "disk": STEEL},
+        "holders": {"arm": {"surface": "bottom", "force": "100 N"}},
+    }
+    (found,) = notes_on(blocks(joined) | lower)
+    assert found == (
+        "holders.arm: presses 'disk' along -z by default, away from its contacts; towards them "
+        "with direction = [0.0, 0.0, 1.0]"
+    )
+    upwards = changed(lower, {"holders.arm.direction": [0.0, 0.0, 1.0]})
+    assert notes_on(blocks(joined) | upwards) == notes_on(blocks(joined)) == []
+
+
+def test_several_bodies_of_a_wrong_unit(joined):
+    """requirement: bodies of some metres under a small force ask for the unit, twice."""
+    found = notes_on(blocks(joined, geometry__length_unit="1 m", holders__arm__force="1 mN"))
+    assert [line.split(":")[0] for line in found] == [
+        *(2 * ["geometry.length_unit"]),
+        "holders.arm.force",
+    ]
+    assert all(line.endswith("wrong length_unit?") for line in found)
+
+
+def test_a_surface_of_the_file_that_is_not_listed(tmp_path, joined):
+    """requirement: a name in the file is said to be there, and where to list it."""
+    named = {body: dict(names) for body, names in NAMED.items()}
+    del named["disk"]["bottom"]
+    case = blocks(joined, geometry__surfaces=named, bodies__disk__fixed="DISK_BOTTOM")
+    with pytest.raises(tw.CaseError) as found:
+        tw.load(case)
+    assert found.value.faults == [
+        "bodies.disk.fixed: found 'DISK_BOTTOM'; in the file, but not listed: add it to "
+        "geometry.surfaces.BODY"
+    ]
 
 
 def two_solids(folder, moved):

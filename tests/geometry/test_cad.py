@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
+import thermowear as tw
+from thermowear.app.cli import main
 from thermowear.case.tables.mesh import MeshTable
 from thermowear.case.values.section import MODEL
 from thermowear.errors import CaseError
@@ -199,7 +201,7 @@ def test_labels_of_faces(starter):
     assert str(found.value) == (
         "geometry.held: no face labelled 'PISTONS'; 'plate' has 7 faces; labels: PISTON, "
         'PLATE_BACK; a face is also named by { point = ["0 mm", "0 mm", "5 mm"] } or { plane = "z"'
-        ', at = "5 mm" }'
+        ", at = \"5 mm\" }; geometry.held needs a surface of the first body, 'plate'"
     )
 
 
@@ -234,6 +236,8 @@ def test_missing_and_ambiguous_faces(choice, words, blocks):
     line = refusal({"paths": blocks, "surfaces": {"back": choice, "bottom": BOTTOM}})
     assert line.startswith("geometry.surfaces.back")
     assert words in line
+    of_role = "; geometry.held needs a surface of the first body, 'pad'" in line
+    assert of_role is ("unknown body" not in line)
 
 
 @pytest.mark.parametrize(
@@ -510,3 +514,17 @@ def test_a_crash_or_a_hang_ends_in_one_line(blocks, monkeypatch):
     with monkeypatch.context() as patch:
         patch.setattr(meshing_process, "_MEMORY", 2**28)
         assert refusal({"paths": blocks}).startswith("geometry.paths.pad: ")
+
+
+def test_a_number_of_elements_of_a_part_from_cad(tmp_path, monkeypatch):
+    """requirement: mesh.elements has no effect there and is refused; sizes and grading have one."""
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "cad-pad"]) == 0
+    with pytest.raises(CaseError) as found:
+        tw.load("cad-pad.toml", ("mesh.elements=20", "mesh.bodies.disk.elements=8"))
+    assert found.value.faults == [
+        f"mesh.{key}elements: has no effect on geometry.type = 'cad'; remove this key (for other "
+        "elements, set mesh.size and mesh.contact_size)"
+        for key in ("", "bodies.disk.")
+    ]
+    tw.load("cad-pad.toml", ("mesh.grading=0.5", "mesh.bodies.disk.grading=0.4"))

@@ -346,3 +346,45 @@ def test_a_gap_that_the_approach_closes(tmp_path):
     mesh = blocks().moved("PUNCH", 0, 1e-5)
     for load in ({"approach": "0.05 mm"}, None):
         assert gap(case(tmp_path, mesh, load).tagged_mesh()) == pytest.approx(1e-5)
+
+
+def notes(path, mesh: Plain, **more) -> list[str]:
+    """Notes on a case with a mesh file."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always", CaseNote)
+        case(path, mesh, **more).tagged_mesh()
+    return [str(one.message) for one in found]
+
+
+def test_bodies_of_a_wrong_unit(tmp_path):
+    """
+    requirement: bodies of some metres, or a pressure of less than 1 Pa, ask for the unit; a large
+    punch of 1.9 m and a light load of 2 Pa do not.
+    """
+    metres = {"length_unit": "100 m", "load": {"force": "1 kN"}}
+    found = notes(tmp_path, blocks(), **metres)
+    assert found == [
+        "geometry.length_unit: 'punch' is 4 m large; wrong length_unit?",
+        "geometry.length_unit: 'plate' is 6 m large; wrong length_unit?",
+    ]
+    light = {"thickness": "1 m", "load": {"force": "20 mN"}}
+    assert notes(tmp_path, blocks(), **light) == [
+        "load: the mean pressure is 0.5 Pa; wrong length_unit?"
+    ]
+    light["load"] = {"force": "80 mN"}
+    assert notes(tmp_path, blocks(), length_unit="32 m", **{"load": {"force": "1 MN"}}) == []
+    assert notes(tmp_path, blocks(), **light) == []
+
+
+def test_bodies_that_are_a_little_apart(tmp_path):
+    """
+    requirement: a gap of some percent of a body is said if no approach closes it.
+    """
+    (found,) = notes(tmp_path, blocks().moved("PUNCH", 0, 1e-3))
+    assert found == (
+        "geometry.path: the faces are 1 mm apart before loading, 5.0% of 'punch', which is 20 mm "
+        "high; move the faces to initial contact"
+    )
+    assert notes(tmp_path, blocks().moved("PUNCH", 0, 1e-4)) == []
+    closed = {"load": {"approach": "1.01 mm"}}
+    assert notes(tmp_path, blocks().moved("PUNCH", 0, 1e-3), **closed) == []

@@ -578,3 +578,44 @@ def test_validate_opens_the_file(two_folders, capsys):
     said = capsys.readouterr()
     assert "punch 40 mm by 20 mm with 44 cells, plate 40 mm by 30 mm" in said.out
     assert said.err == ""
+
+
+def test_a_surface_of_the_file_that_is_not_listed(tmp_path):
+    """
+    requirement: a name in the file is said to be there, and where to list it; one that is listed
+    by another name, a name that is nowhere, and all names in a file that is not there, are unknown.
+    """
+    path = gmsh_blocks(tmp_path / "a.msh")
+
+    def line(name, path=path, **changes):
+        case = file_tables(path, **changes)
+        case["heat"]["flux"] = {name: "1 W/m^2"}
+        with pytest.raises(CaseError) as error:
+            tw.load(case)
+        return next(fault for fault in error.value.faults if fault.startswith("heat.flux"))
+
+    listed = {"surfaces": GMSH_NAMES["surfaces"] | {"foot": "BOTTOM"}, "fixed": "foot"}
+    assert line("TOP", held="HELD") == (
+        "heat.flux.TOP: in the file, but not listed: add it to geometry.surfaces: TOP = 'TOP'"
+    )
+    assert "unknown name in this geometry; must be one of: punch_face" in line("BOTTOM", **listed)
+    assert "unknown name" in line("elsewhere")
+    assert "unknown name" in line("TOP", tmp_path / "none.msh", held="HELD")
+
+
+def test_keys_without_effect_on_a_mesh_file(tmp_path):
+    """
+    requirement: numbers of elements and gradings, which a file has, are refused; default values,
+    which resolved cases have, are not.
+    """
+    path = gmsh_blocks(tmp_path / "a.msh")
+    case = file_tables(path)
+    case["mesh"] = {"elements": 20, "grading": 0.5, "bodies": {"punch": {"elements": 12}}}
+    with pytest.raises(CaseError) as error:
+        tw.load(case)
+    assert [line.split(";")[0] for line in error.value.faults] == [
+        f"mesh.{key}: has no effect on geometry.type = 'file'"
+        for key in ("elements", "grading", "bodies.punch.elements")
+    ]
+    case["mesh"] = {"elements": 12, "grading": 0.3, "degree": 3}
+    assert tw.load(case).mesh.degree == 3

@@ -330,6 +330,19 @@ def test_keys_of_plane_models(tmp_path, changes, expected):
     assert error.value.faults[0].startswith(expected)
 
 
+def test_a_turning_body_without_its_axis(tmp_path):
+    """
+    requirement: the missing key of the geometry is named.
+    """
+    tables = file_tables("a.msh", **BLOCKS) | {"motion": {"angular_velocity": "1 rad/s"}}
+    with pytest.raises(CaseError) as error:
+        tw.load(tables)
+    assert error.value.faults == [
+        "motion.angular_velocity: not supported; a 3d model needs motion.velocity, or "
+        "geometry.rotation_center (of the axis along z) if body 2 rotates"
+    ]
+
+
 def test_keys_of_space_in_plane_models():
     """
     requirement: rollers and an axis are refused in sections.

@@ -13,7 +13,7 @@ from matplotlib.text import Text
 from rich.console import Console
 
 from thermowear.output.console import print_summary
-from thermowear.output.pictures import make, make_pictures
+from thermowear.output.pictures import make, make_pictures, panels
 from thermowear.output.report import write_report
 from thermowear.output.sweep import draw_sweep, is_sweep
 
@@ -41,10 +41,10 @@ def shown(folder: Path, monkeypatch) -> list[str]:
     """Labels and sums of the curves of all pictures, the report, and the lines of the console."""
     lines: list[str] = []
 
-    def draw(figure: Figure, path, **_) -> None:
+    def draw(figure: Figure, path, *_) -> None:
         lines.extend([f"== {Path(path).name}", *_labels(figure), *_sums(figure)])
 
-    monkeypatch.setattr(Figure, "savefig", draw)
+    monkeypatch.setattr(panels, "save", draw)
     monkeypatch.setattr(make, "attempt", lambda *_: "exit code 1")
     notes = draw_sweep(folder) if is_sweep(folder) else make_pictures(folder)
     lines += ["== notes", *(note.replace(str(folder), "FOLDER") for note in notes)]

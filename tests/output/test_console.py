@@ -1,7 +1,9 @@
 """Console output."""
 
 import io
+from dataclasses import replace
 
+import pytest
 from rich.console import Console
 
 from thermowear.output.console import ConsoleProgress, print_summary
@@ -38,6 +40,26 @@ def test_one_live_line_on_a_terminal():
     text = shown(terminal=True)
     assert "\x1b[2K" in text or "\r" in text
     assert text.rstrip().splitlines()[-1].count("t = 1 s") == 1
+
+
+@pytest.mark.parametrize(
+    ("pressure", "shown"), [(0.19, "0.19 Pa"), (1.9e3, "1.9 kPa"), (1.9e5, "0.19 MPa")]
+)
+def test_units_suit_the_numbers(pressure, shown):
+    """requirement: no powers of ten for small pressures, nor thousands of micrometres."""
+    summary = {"min_pressure_Pa": 0.0, "max_pressure_Pa": pressure, "approach_m": -0.012037}
+    text = io.StringIO()
+    print_summary(Console(file=text, width=80), summary, {})
+    assert f"0 … {shown}" in text.getvalue()
+    assert "-12.037 mm" in text.getvalue()
+
+
+def test_a_line_of_progress_is_one_line():
+    """requirement: a step of a long run fits in 80 columns."""
+    text = io.StringIO()
+    with ConsoleProgress(Console(file=text, width=80)) as progress:
+        progress.step(1234, replace(row(12345.6), max_pressure=0.19287e6), 0.25)
+    assert len(text.getvalue().rstrip("\n")) < 80
 
 
 def test_tables_of_bodies_and_contacts():

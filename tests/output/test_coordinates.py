@@ -4,13 +4,12 @@ import json
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from thermowear.output import tables
 from thermowear.output.files import model_of
 from thermowear.output.pictures import bodies, panels
 from thermowear.output.pictures.bodies import BodySection
-from thermowear.output.report.contents import shown_table
+from thermowear.output.report.shown_tables import shown_table
 from thermowear.results import TABLES
 
 INTERFACE, PROFILE = (TABLES[name].columns for name in ("interface", "profile"))
@@ -56,7 +55,7 @@ def test_pictures_of_the_bodies(tmp_path, monkeypatch):
     interface = dict.fromkeys(("x_m", "y_m", "s_m", "pressure_Pa"), np.array([1e-3, 2e-3]))
     monkeypatch.setattr(tables, "read", lambda path: tables.TableColumns(path, interface))
     drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, path, **_: drawn.append(figure))
+    monkeypatch.setattr(panels, "save", lambda figure, *_: drawn.append(figure))
     bodies.draw_bodies(tmp_path)
     assert len(drawn) == 2
     for figure in drawn:

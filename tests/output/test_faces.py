@@ -8,7 +8,7 @@ import pytest
 def test_a_face_is_seen_from_its_outside(height, direction, tower):
     """requirement: the rubbed face of a disk is seen from outside, wherever its hat lies."""
     pyvista = pytest.importorskip("pyvista")
-    from thermowear.output.pictures.faces import _outwards
+    from thermowear.output.pictures.in_space.faces import _outwards
 
     plate = pyvista.Box((0, 100, 0, 100, -10, 0)).triangulate().subdivide(3)
     hat = pyvista.Box((40, 60, 40, 60, min(0, tower), max(0, tower)))

@@ -38,7 +38,7 @@ def test_they_are_files_of_the_program(folder):
 def test_bodies_are_clipped_whatever_their_number():
     """requirement: all bodies behind the plane are drawn, the last one first."""
     pyvista = pytest.importorskip("pyvista")
-    from thermowear.output.pictures.solids import clipped
+    from thermowear.output.pictures.in_space.solids import clipped
 
     blocks = [pyvista.Box((k, k + 1, y, y + 2, 0, 1)) for k, y in ((0, -1), (2, -1), (4, -5))]
     grid = pyvista.merge([block.delaunay_3d() for block in blocks])

@@ -13,6 +13,7 @@ from thermowear.case.starters import starter_text
 from thermowear.output.pictures.curves import draw_interface
 from thermowear.output.pictures.make import make_pictures
 from thermowear.output.pictures.over_time import draw_heat, draw_history
+from thermowear.output.pictures.panels import column, from_zero, time_text
 from thermowear.output.rendering import Renderer
 
 from ..conftest import COLD_RUNNING_IN, HOT
@@ -59,6 +60,26 @@ def test_pictures_have_their_own_style(folders):
         draw_interface(folders / "hot")
     image = mpimg.imread(folders / "hot" / "interface.png")
     assert image.shape[:2] == (round(3 * 2.3 * 150), round(6.4 * 150))
+
+
+@pytest.mark.parametrize(("end", "text"), [(3.0, "3 s"), (7200.0, "7200 s"), (40403.8, "11.22 h")])
+def test_long_times_are_in_hours(end, text):
+    """requirement: times of runs beyond two hours are readable, the same unit in all labels."""
+    assert time_text(end) == text
+    assert time_text(3600.0, end).endswith(text[-1])
+
+
+def test_no_label_is_cut_off(tmp_path):
+    """requirement: all labels are drawn where two layouts with other ticks would alternate."""
+    x, labels = np.linspace(0.0, 1.5, 31), ("contact pressure\n[MPa]", "shape\n[µm]")
+    curves = np.full(31, 2 / 15), np.linspace(347.3, 0.0, 31)
+    with column(tmp_path / "picture.png", 2, 2.3) as axes:
+        for axis, y, label in zip(axes, curves, labels, strict=True):
+            axis.plot(x, y)
+            axis.set(xlabel="x [mm]", ylabel=label)
+        from_zero(axes[0])
+    image = mpimg.imread(tmp_path / "picture.png")[..., :3]
+    assert (image[:, :3] > 0.95).all()
 
 
 STARTERS = {

@@ -20,6 +20,7 @@ from thermowear.output import tables
 from thermowear.output.files import BY_CONTACT, PICTURES
 from thermowear.output.pictures.curves import draw_interface
 from thermowear.output.report import is_report
+from thermowear.output.report.shown_tables import shown_table
 from thermowear.results import TABLES
 
 from ..case.starter import FRETTING, HERTZ, RUNNING_IN, STEADY
@@ -340,6 +341,38 @@ def test_columns_that_are_not_known(copy):
     heads, rows = report(folder).table("History, one row per step")
     assert heads[-1] == "tilt [mrad]"
     assert rows[0][-1] == "500"
+
+
+def test_points_in_space_are_not_listed(copy):
+    """requirement: a few of many unsorted points say nothing; their file and number are named."""
+    folder = copy(STEADY)
+    head, *rows = (folder / "interface.csv").read_text(encoding="utf-8").splitlines()
+    k = head.split(",").index("s_m")
+    cells = [row.split(",") for row in rows]
+    lines = [",".join([*row[:k], "nan", *row[k + 1 :]]) for row in cells]
+    (folder / "interface.csv").write_text("\n".join([head, *lines, ""]), encoding="utf-8")
+    page = report(folder)
+    assert f"{len(rows)} points in interface.csv, not shown here" in page.text["p"]
+    assert "Contact at the end" in page.text["h3"]
+
+
+def test_rounding_errors_are_zero(copy):
+    """requirement: a force far below the others, and a position, are shown as 0."""
+    folder = copy(STEADY)
+    change(folder / "summary.json", guide_force_N=5.6e-13, equilibrium_relative_error=2e-15)
+    page = report(folder)
+    assert page.shown("guide_force_N") == "0 N"
+    assert page.shown("equilibrium_relative_error") == "2e-15"
+    values = {"x_m": np.array([0.01, 0.02]), "y_m": np.array([3e-19, -2e-19])}
+    quantities = {name: TABLES["interface"].columns[name[0]] for name in values}
+    assert [head.label for head in shown_table("", values, quantities, "").heads] == ["x"]
+
+
+def test_memory_has_a_unit(copy):
+    """requirement: bytes are shown in MB or GB."""
+    folder = copy(STEADY)
+    change(folder / "summary.json", factor_memory_estimate_bytes=905540000)
+    assert report(folder).shown("factor_memory_estimate_bytes") == "906 MB"
 
 
 # ---- pictures ----

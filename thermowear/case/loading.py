@@ -69,6 +69,15 @@ _MESSAGES = {
     "too_long": "must have at most {max_length} values",
 }
 
+_REQUIRED = {
+    "model": "must be 'axisymmetric', 'plane-strain', 'plane-stress' or '3d'",
+    "geometry": 'needs a type, such as [geometry] type = "file" (a mesh) or one of the starters',
+    "bodies": "needs the material of each body: [bodies.NAME] young_modulus = ...",
+    "load": "needs one of load.force, load.mean_pressure and load.approach",
+    "holders": "needs a holder of a surface: [holders.NAME] surface = ..., force = ...",
+    "analysis": 'needs a type, such as [analysis] type = "steady"',
+}
+"""Contents of the required tables and keys of a case, for messages."""
 _ANALYSES = "'initial', 'steady', 'transient', 'fretting', 'reciprocating', 'stability'"
 
 
@@ -190,6 +199,8 @@ def _message(fault: Any, kind: type[Section]) -> str:
     if fault["type"] == "extra_forbidden":
         return f"{path}: unknown key{_suggestion(location, kind)}"
     message = _MESSAGES.get(fault["type"], fault["msg"]).format(**fault.get("ctx", {}))
+    if fault["type"] == "missing" and path in _REQUIRED:
+        return f"{path}: missing; {_REQUIRED[path]}"
     if fault["type"] == "missing" or isinstance(fault["input"], dict):
         return f"{path}: {message}"
     return f"{path}: found {quoted(fault['input'])}; {message}"

@@ -49,7 +49,7 @@ class ConsoleProgress:
         if self._status is not None:
             self._status.stop()
         if self._unsaid:
-            self._console.print(self._unsaid, highlight=False)
+            self._console.print(self._unsaid, highlight=False, soft_wrap=True)
 
     def phase(self, name: str) -> None:
         """Show the phase that begins."""
@@ -58,11 +58,11 @@ class ConsoleProgress:
 
     def step(self, number: int, row, distance: float) -> None:
         """Show an accepted step of a transient run."""
-        text = (
-            f"t = {row.time:.4g} s   step {number}   largest pressure "
-            f"{row.max_pressure / 1e6:.4g} MPa   distance from steady {distance:.2e}"
+        unit, scale = _unit("max_pressure_Pa", row.max_pressure)
+        self._say(
+            f"t = {row.time:.4g} s   step {number}   peak "
+            f"{scale * row.max_pressure:.4g} {unit}   distance from steady {distance:.2e}"
         )
-        self._say(text)
 
     def load_step(self, number: int, row) -> None:
         """Show an accepted increment of a fretting analysis."""
@@ -83,7 +83,7 @@ class ConsoleProgress:
             self._status.update(text)
         elif time.monotonic() - self._last > _PLAIN_INTERVAL:
             self._last = time.monotonic()
-            self._console.print(text, highlight=False)
+            self._console.print(text, highlight=False, soft_wrap=True)
             self._unsaid = ""
 
 
@@ -107,6 +107,12 @@ _OF_PARTS = {
     "probes": ("temperature_K",),
 }
 """Numbers of parts of a model that are printed."""
+_UNITS = {
+    "Pa": ((1e10, "GPa", 1e-9), (1e4, "MPa", 1e-6), (10.0, "kPa", 1e-3), (0.0, "Pa", 1.0)),
+    "m": ((1e-3, "mm", 1e3), (1e-8, "µm", 1e6), (0.0, "nm", 1e9)),
+}
+"""Units by SI unit: smallest size [SI], unit, and scale from the SI unit."""
+_FLAT = 1e-12  # range of the shape up to which a face is flat but for rounding errors [m]
 _SMALLEST_SHOWN = 1e-3
 """Smallest error estimate shown as a number [%]; errors of quadrature are far below."""
 
@@ -192,22 +198,20 @@ def _highlights(summary: dict):
 
     def row(key: str, digits: int = 6, label: str = "", unit: str = "", more: str = ""):
         if exists(key):
-            quantity = of_key(key).shown_in(unit) if unit else of_key(key)
-            value = f"{quantity.drawn(summary[key]):.{digits}g} {quantity.unit}"
-            yield label or quantity.label, value + more
+            value, suited = _readable(key, summary[key], unit)
+            yield label or of_key(key).label, f"{value:.{digits}g} {suited}{more}"
 
     for where, balance, error in errors_of(summary):
         if not holds(error):
             yield f"NOT BALANCED: {balance.name}{where}", f"relative error {error:.1e}"
     yield from row("normal_force_N", unit="kN")
     if exists("min_pressure_Pa"):
-        low, high = (
-            of_key("max_pressure_Pa").drawn(summary[f"{m}_pressure_Pa"]) for m in ("min", "max")
-        )
+        low, high = (summary[f"{m}_pressure_Pa"] for m in ("min", "max"))
+        unit, scale = _unit("max_pressure_Pa", high)
         margin = _margin(summary, "pressure", "max_pressure")
-        yield "pressure", f"{low:.5g} … {high:.5g} MPa{margin}"
+        yield "pressure", f"{scale * low:.5g} … {scale * high:.5g} {unit}{margin}"
     yield from row("approach_m", 5, "approach of the holder towards body 2")
-    if summary.get("shape_range_m", 0.0) > 0:
+    if summary.get("shape_range_m", 0.0) > _FLAT:
         yield from row("shape_range_m", 5, more=_margin(summary, "shape"))
     if exists("max_temperature_K"):
         yield from row("max_temperature_K", 5, more=_margin(summary, "temperature"))
@@ -251,6 +255,24 @@ def _highlights(summary: dict):
         yield "pressure perturbations", _growing(summary)
     if exists("distance_from_steady"):
         yield "distance from the steady state", f"{summary['distance_from_steady']:.2e}"
+
+
+def _unit(key: str, size: float) -> tuple[str, float]:
+    """Readable unit for a number of a size [SI], and its scale from the SI unit."""
+    quantity = of_key(key)
+    for least, unit, scale in _UNITS.get(quantity.si, ()):
+        if abs(size) >= least and size:
+            return unit, scale
+    return quantity.unit, quantity.drawn(1.0)
+
+
+def _readable(key: str, value: float, unit: str = "") -> tuple[float, str]:
+    """Number in a given unit, or else in a readable one, with that unit."""
+    quantity = of_key(key).shown_in(unit) if unit else of_key(key)
+    if unit or quantity.si not in _UNITS:
+        return quantity.drawn(value), quantity.unit
+    suited, scale = _unit(key, value)
+    return scale * value + 0.0, suited
 
 
 def _margin(summary: dict, *quantities: str) -> str:

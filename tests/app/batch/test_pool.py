@@ -14,7 +14,7 @@ import pytest
 
 from thermowear.app.batch import pool as pools
 from thermowear.app.batch.pool import ProcessPool
-from thermowear.errors import ComputationError
+from thermowear.errors import ComputationError, note
 
 
 def square(number):
@@ -66,6 +66,18 @@ def test_all_calls_are_computed_in_other_processes():
     assert not multiprocessing.active_children()
     with pytest.raises(RuntimeError, match="shut down"):
         pool.submit(square, 1)
+
+
+def noted(text):
+    note(text)
+    return text
+
+
+def test_notes_are_not_repeated_by_each_process(capfd):
+    """requirement: the first process notes what is unusual in a case; others print nothing."""
+    with ProcessPool(2) as pool:
+        assert pool.submit(noted, "unusual").result() == "unusual"
+    assert capfd.readouterr().err == ""
 
 
 def test_a_process_that_dies_takes_one_call_with_it():

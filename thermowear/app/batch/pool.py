@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import threading
+import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future
 from contextlib import contextmanager, suppress
@@ -13,7 +14,7 @@ from multiprocessing import connection, get_context
 from queue import Empty, SimpleQueue
 from typing import Any
 
-from ...errors import ComputationError
+from ...errors import CaseNote, ComputationError
 from ...interrupts import deliver_again
 
 _SPAWN = get_context("spawn")  # fork does not work after MPI was initialised
@@ -197,6 +198,7 @@ def _work(pipe) -> None:
 
     signal.signal(signal.SIGTERM, end)
     deliver_again()
+    warnings.simplefilter("ignore", CaseNote)  # would be repeated by each process
     try:
         while (message := pipe.recv()) is not None:
             function, arguments, keywords = message

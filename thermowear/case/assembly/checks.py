@@ -53,7 +53,10 @@ def _names(case: AssemblyCase) -> Iterator[Fault]:
     for path, surfaces in _surfaces(case):
         for surface in surfaces:
             if surface not in known:
-                yield path, f"found {surface!r}; {_unknown(geometry.surfaces)}"
+                text = _unknown(geometry.surfaces)
+                if geometry.not_listed(surface):
+                    text = "in the file, but not listed: add it to geometry.surfaces.BODY"
+                yield path, f"found {surface!r}; {text}"
 
 
 def _surfaces(case: AssemblyCase) -> Iterator[tuple[str, tuple[str, ...]]]:

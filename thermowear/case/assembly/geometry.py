@@ -93,6 +93,10 @@ class AssemblyGeometry(Section):
         """Body and its zones."""
         return body, *(zone for zone, owner in self.zones.items() if owner == body)
 
+    def not_listed(self, surface: str) -> bool:
+        """True if a file has a surface of this name that the case does not list."""
+        return False
+
     def body_of(self, surface: str) -> str:
         """Body that a surface belongs to."""
         owners = [body for body in self.bodies if surface.startswith(f"{body}_")]

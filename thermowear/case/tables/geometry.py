@@ -155,6 +155,15 @@ class Geometry(Section):
             )
         return self
 
+    def has_key(self, key: str) -> bool:
+        """True if the table of this geometry can have a key."""
+        fields = type(self).model_fields.items()
+        return any(key in (name, field.alias) for name, field in fields)
+
+    def not_listed(self, surface: str) -> bool:
+        """True if a file has a surface of this name that the case does not list."""
+        return False
+
     def sizes(self) -> dict[str, float]:
         """Lengths that the mesh is made from, by key [m]."""
         fields = type(self).model_fields.items()

@@ -60,11 +60,14 @@ def _names(case: Case) -> Iterator[Fault]:
         tables[f"heat.{table}"] = (getattr(case.heat, table), surfaces)
     for table, (found, known) in tables.items():
         for name in found:
-            if name not in known:
-                yield (
-                    f"{table}.{name}",
-                    f"unknown name in this geometry; must be one of: {', '.join(known)}",
+            if name in known:
+                continue
+            text = f"unknown name in this geometry; must be one of: {', '.join(known)}"
+            if known == surfaces and case.geometry.not_listed(name):
+                text = (
+                    f"in the file, but not listed: add it to geometry.surfaces: {name} = {name!r}"
                 )
+            yield f"{table}.{name}", text
     for name in bodies:
         if name not in case.bodies:
             yield f"bodies.{name}", "missing; every body of the geometry needs a material"

@@ -26,6 +26,8 @@ _NEEDS_FREE = {
 """Free motion of the holder that a load requires, and the message without it."""
 _NEEDS_MODEL = {"moments": "3d", "moment": "plane", "lever": "plane"}
 """Models that a load requires."""
+_ARTICLES = {"axisymmetric": "an"}
+"""Articles of models in messages."""
 SURFACES = ("cooling", "temperature", "flux", "power")
 """Keys of heat that are tables by surface."""
 _EXCLUSIVE = (
@@ -157,13 +159,16 @@ def motion(case: Case) -> Iterator[Fault]:
     ):
         return  # the velocity alone defines the sliding
     axisymmetric = case.model == "axisymmetric"
-    what = f"{case.model} models"
+    what = f"{_ARTICLES.get(case.model, 'a')} {case.model} model"
     needed, other = "velocity", "angular_velocity"
     if axisymmetric or motion.axis is not None or case.geometry.rotation_center is not None:
         needed, other = other, needed
         what = what if axisymmetric else "motion.axis" if motion.axis else case.geometry.type
     if getattr(motion, other) is not None:
-        yield f"motion.{other}", f"not supported; {what} needs motion.{needed}"
+        centre = ""
+        if other == "angular_velocity" and case.geometry.has_key("rotation_center"):
+            centre = ", or geometry.rotation_center (of the axis along z) if body 2 rotates"
+        yield f"motion.{other}", f"not supported; {what} needs motion.{needed}{centre}"
     elif getattr(motion, needed) is None:
         yield f"motion.{needed}", f"missing; {what} needs it"
     elif axisymmetric and getattr(motion, needed) < 0:

@@ -20,6 +20,7 @@ from ...laws.expressions import Dimension, Expression, parse_expression
 from ...laws.interfaces import UNITS
 from ...laws.place import PLACE
 from .json_schema import WrittenAs, quantity_text
+from .unit_names import similar_units, unknown_unit, without_offset
 
 _LONGEST = 200
 """Largest number of characters of a quantity."""
@@ -94,7 +95,8 @@ def parse(text: Any, example: str):
             value = _read(text)
             bare = value.unitless
     except Exception as error:  # pint raises a dozen kinds, tokenizer errors among them
-        raise ValueError(f'cannot read "{text}"; write it like "{example}"') from error
+        why = unknown_unit(error)
+        raise ValueError(f'cannot read "{text}"{why}; write it like "{example}"') from error
     if bare:
         raise ValueError(f'found "{text}" without a unit; write it like "{example}"')
     if not math.isfinite(value.magnitude):
@@ -232,8 +234,8 @@ def expression(text: str, unit: str, variables: tuple[str, ...]) -> Expression:
 
 
 @lru_cache(maxsize=1000)
-def in_si(text: str) -> tuple[float, Dimension]:
-    """Factor to SI and dimension of a unit.
+def in_si(text: str, number: float = 1.0) -> tuple[float, Dimension]:
+    """Factor to SI and dimension of a unit; the number before it is for the message.
 
     Raises
     ------
@@ -243,13 +245,15 @@ def in_si(text: str) -> tuple[float, Dimension]:
     units = registry()
     try:
         unit = unit_of(text)
-        one, two = (units.Quantity(number, unit).to_base_units() for number in (1.0, 2.0))
+        one, two = (units.Quantity(x, unit).to_base_units() for x in (1.0, 2.0))
     except Exception as error:  # pint raises a dozen kinds, tokenizer errors among them
-        raise ValueError(f"{text!r} is not a unit") from error
+        similar = similar_units(text) if _WORD.fullmatch(text) else ""
+        raise ValueError(f"{text!r} is not a unit{similar}") from error
     if not 0.0 < one.magnitude < math.inf:
         raise ValueError(f"the unit {text!r} is out of range in SI")
     if abs(two.magnitude / one.magnitude - 2.0) > _OFFSET:
-        raise ValueError(f"{text!r} is a scale with an offset; write temperatures in K (293.15 K)")
+        without = without_offset(units.Quantity(number, unit))
+        raise ValueError(f"{text!r} is a scale with an offset; write {without}")
     powers = {
         units.get_symbol(name): power
         for name, power in one.unit_items()

@@ -16,8 +16,8 @@ def is_stable(
 
     With the compliance A and the thermal distortion H by the heat of the pressure, a pressure
     without resultant that keeps the faces closed under a part s of the heat satisfies
-    ``(A + s H) λ = R d``. The least s > 0 is the critical speed factor of static modes (Burton, Nerlikar
-    and Kilaparti, Wear 24 (1973) 177); the state is unstable if it is less than 1.
+    ``(A + s H) λ = R d``. The least s > 0 is the critical speed factor of static modes
+    (R. A. Burton et al., Wear 24 (1973) 177); the state is unstable if it is less than 1.
 
     Parameters
     ----------

@@ -20,6 +20,8 @@ from .mesh_checks import (
     check_pieces,
     check_shared_edges,
     length,
+    note_pressure,
+    note_size,
     points_of,
     whole_bodies,
 )
@@ -62,6 +64,8 @@ def check_assembly(mesh: AnyMesh, case: AssemblyCase) -> None:
         does not lie in its plane, or the faces of a contact do not fit each other.
     """
     mesh = whole_bodies(mesh, case.geometry)
+    if not case.geometry.sized:  # CAD files have a unit of their own
+        note_size(mesh)
     for block in mesh.blocks:
         (check_shared_facets if case.model == "3d" else check_shared_edges)(block)
     for path, face in _faces(case):
@@ -77,6 +81,8 @@ def check_assembly(mesh: AnyMesh, case: AssemblyCase) -> None:
         _check_distance(case, name, faces)
         area += faces.area
     _check_loads(mesh, case, area)
+    for name in case.holders:
+        _check_direction(mesh, case, name)
 
 
 def _faces(case: AssemblyCase) -> Iterator[tuple[str, str]]:
@@ -214,6 +220,8 @@ def _check_loads(mesh: AnyMesh, case: AssemblyCase, area: float) -> None:
         history = holder.history
         courses = (None, None) if history is None else (history.force, history.approach)
         force = max(courses[0] or (holder.force or 0.0,))
+        if area > 0.0:
+            note_pressure(f"holders.{name}.force", force / area)
         if area > 0.0 and force > SQUEEZED * area * moduli[softer]:
             raise CaseError(
                 f"holders.{name}.force: a mean pressure of {force / area / 1e6:.4g} MPa on all "
@@ -227,6 +235,31 @@ def _check_loads(mesh: AnyMesh, case: AssemblyCase, area: float) -> None:
                 f"holders.{name}.approach: {length(approach)} is {approach / size:.0%} of the size "
                 "of the bodies (check geometry.length_unit)"
             )
+
+
+def _check_direction(mesh: AnyMesh, case: AssemblyCase, name: str) -> None:
+    """Note a force along the default direction that points away from all contacts of its body."""
+    holder = case.holders[name]
+    forced = holder.force is not None or (holder.history is not None and holder.history.force)
+    if holder.direction is not None or not forced or "z" not in holder.free:
+        return
+    surface = holder.surface[0]
+    direction = np.array(case.geometry.press_direction(surface))
+    body = case.geometry.body_of(surface)
+    faces = [face for table in case.sliding.values() for face in table.between or ()]
+    own = [face for face in faces if case.geometry.body_of(face) in case.glued[body]]
+    normals = [normal for face in own if (normal := _normal(mesh, case, face)) is not None]
+    if (
+        own
+        and len(normals) == len(own)
+        and all(normal @ direction < -_CLOSED for normal in normals)
+    ):
+        axis = "xyz"[int(np.argmax(np.abs(direction)))]
+        opposite = [float(x) for x in -direction + 0.0]
+        note(
+            f"holders.{name}: presses {body!r} along -{axis} by default, away from its contacts; "
+            f"towards them with direction = {opposite}"
+        )
 
 
 def _modulus(case: AssemblyCase, part: str) -> float:

@@ -22,6 +22,10 @@ _FLAT = 1e-8
 """Sine of the angle between grid lines below which a cell is degenerate."""
 _SAME = 1e-7
 """Distance relative to the size of a body below which nodes coincide."""
+_LARGE = 2.0
+"""Size of a body above which a note is issued [m]."""
+_NO_PRESSURE = 1.0
+"""Mean pressure below which a note is issued [Pa]."""
 AnyMeshed = Geometry | AssemblyGeometry
 """Geometry of two bodies, or of several."""
 LEVEL = 1e-6
@@ -173,6 +177,20 @@ def described(mesh: AnyMesh) -> list[str]:
         size = " by ".join(length(x) for x in np.ptp(points_of(mesh, body), axis=0))
         lines.append(f"{body} {size} with {np.count_nonzero(tags == tag)} cells")
     return lines
+
+
+def note_size(mesh: AnyMesh) -> None:
+    """Note a body of a mesh file that is larger than usual ones, as in a wrong unit of length."""
+    for body in mesh.bodies:
+        size = float(np.ptp(points_of(mesh, body), axis=0).max())
+        if size > _LARGE:
+            note(f"geometry.length_unit: {body!r} is {size:.4g} m large; wrong length_unit?")
+
+
+def note_pressure(key: str, pressure: float) -> None:
+    """Note a mean pressure that no load causes, as in a wrong unit of length [Pa]."""
+    if 0.0 < pressure < _NO_PRESSURE:
+        note(f"{key}: the mean pressure is {pressure:.3g} Pa; wrong length_unit?")
 
 
 def length(value: float) -> str:

@@ -15,7 +15,7 @@ from ...errors import CaseError, note
 from ..mesh.mixed import AnyMesh, block_with
 from ..mesh.nodes import shape_functions
 from ..mesh.tagged import TaggedMesh
-from .mesh_checks import length, points_of, whole_bodies
+from .mesh_checks import length, note_pressure, note_size, points_of, whole_bodies
 from .solid_pairs import compared_solids
 
 if TYPE_CHECKING:
@@ -30,6 +30,8 @@ SQUEEZED = 0.2
 """Largest compression relative to the height of a body; beyond it small strains are invalid."""
 MUCH = 0.02
 """Compression relative to the height of a body above which a note is issued."""
+_APART = 0.01
+"""Gap relative to the height of a body above which a note is issued."""
 _AT_ONCE = 2000
 """Number of points at which faces are compared together."""
 _AS_THEY_ARE = np.eye(2)
@@ -61,7 +63,10 @@ def check_pair(mesh: AnyMesh, case: Case) -> None:
     CaseError
         If they overlap, are apart, or are compressed by a large part of their size.
     """
-    faces = _compared(whole_bodies(mesh, case.geometry), case)
+    bodies = whole_bodies(mesh, case.geometry)
+    if not case.geometry.sized:  # CAD files have a unit of their own
+        note_size(bodies)
+    faces = _compared(bodies, case)
     height, overlap = faces.height, -faces.gap
     of_body = f"of {faces.body!r}, which is {length(height)} high"
     if overlap > SQUEEZED * height:
@@ -82,6 +87,11 @@ def check_pair(mesh: AnyMesh, case: Case) -> None:
         note(
             f"geometry.path: the bodies overlap by {length(overlap)} before loading{faces.where}, "
             f"{overlap / height:.1%} {of_body}"
+        )
+    if approach is None and faces.gap > _APART * height:
+        note(
+            f"geometry.path: the faces are {length(faces.gap)} apart before loading{faces.where}, "
+            f"{faces.gap / height:.1%} {of_body}; move the faces to initial contact"
         )
 
 
@@ -112,6 +122,7 @@ def _check_pressure(case: Case, faces: _Faces) -> None:
         for part in case.geometry.parts_of(body)
     }
     softer = min(moduli, key=moduli.__getitem__)
+    note_pressure("load", force / area)
     strain = force / area / moduli[softer]
     if strain > SQUEEZED:
         raise CaseError(

@@ -36,7 +36,11 @@ def chosen_faces(
         if unknown:
             raise CadError(f"{surface.key}.body: unknown body; must be one of: {', '.join(bodies)}")
         among = [bodies[name] for name in bodies if set(names) <= {name}]
-        found |= {face.tag: face for face in _faces(gmsh, surface.key, choice, among)}
+        try:
+            found |= {face.tag: face for face in _faces(gmsh, surface.key, choice, among)}
+        except CadError as error:
+            reason = f"; {surface.reason}" if surface.reason else ""
+            raise CadError(f"{error}{reason}") from None
     result: dict[str, list[CadFace]] = {}
     for face in found.values():
         result.setdefault(face.body, []).append(face)

@@ -73,12 +73,25 @@ class FaceChoice:
 
 @dataclass(frozen=True)
 class SurfaceRequest:
-    """Named surface: all faces of its choices; of one body, or of those that have any."""
+    """Named surface: all faces of its choices; of one body, or of those that have any.
+
+    Attributes
+    ----------
+    name : str
+    key : str
+        Path of the key that chooses the faces, for messages.
+    choices : tuple of FaceChoice
+    body : str or None
+        Only body that the faces can belong to.
+    reason : str
+        Why it is the only one, for messages.
+    """
 
     name: str
     key: str
     choices: tuple[FaceChoice, ...]
     body: str | None = None
+    reason: str = ""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from ...case.values.json_schema import LIST_OF_NAMES, OrAlso
 from ...case.values.section import MODEL, KeyFault, UserFile
 from ...case.values.units import Length
 from ..checks.assembly_checks import check_assembly
-from ..reading.bodies import read_bodies
+from ..reading.bodies import has_surface, read_bodies
 from ..reading.named import Named
 from .mesh_file import CellSets
 
@@ -181,6 +181,11 @@ class AssemblyFile(AssemblyGeometry):
             surfaces,
             self._with_material,
         )
+
+    def not_listed(self, surface: str) -> bool:
+        if self.sized or any(surface in of.values() for of in self.surface_names.values()):
+            return False
+        return has_surface(surface, self.path, self.paths, 3 if self._in_space else 2)
 
     def check(self, mesh, case):
         check_assembly(mesh, case)

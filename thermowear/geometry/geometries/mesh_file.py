@@ -22,7 +22,7 @@ from ..checks.mesh_checks import check_mesh
 from ..checks.pair_checks import check_pair
 from ..checks.solid_pairs import projected_area
 from ..checks.solid_surfaces import check_solid_mesh
-from ..reading.bodies import read_bodies
+from ..reading.bodies import has_surface, read_bodies
 from ..reading.named import Named
 
 _KEYS = {
@@ -246,6 +246,11 @@ class MeshFile(HalvableGeometry):
             list(self._purposes().values()),
             self._with_material,
         )
+
+    def not_listed(self, surface: str) -> bool:
+        if self.sized or surface in self.surface_names.values():
+            return False
+        return has_surface(surface, self.path, self.paths, 3 if self._in_space else 2)
 
     def check(self, mesh, case):
         if self._in_space:

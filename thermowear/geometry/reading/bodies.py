@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from ...errors import CaseError
 from ..mesh.mixed import AnyMesh
 from .assembly import assemble, divided
 from .contents import MeshContents, joined
@@ -48,6 +49,15 @@ def read_bodies(
     contents = _contents(path, {body: paths[body] for body in cells if paths}, dim)
     contents = replace(contents, points=contents.points * length_unit)
     return bodies_in(contents, cells, surfaces, with_material)
+
+
+def has_surface(name: str, path: str | None, paths: Mapping[str, str], dim: int) -> bool:
+    """Test whether files can be read and name a surface, see `read_bodies`."""
+    try:
+        contents = _contents(path, paths, dim)
+    except CaseError:
+        return False
+    return name in (*contents.names(dim - 1), *contents.node_sets)
 
 
 def bodies_in(

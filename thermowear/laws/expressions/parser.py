@@ -22,8 +22,11 @@ import numpy as np
 from .tokens import Dimension, Token, fault, tokens, unit_end
 from .tree import EXTREMES, FUNCTIONS, KNOWN, Expression, Node, evaluate, variables
 
-Units = Callable[[str], tuple[float, Dimension]]
-"""Map from the text of a unit to SI factor and dimension; `ValueError` if it is invalid."""
+Units = Callable[[str, float], tuple[float, Dimension]]
+"""Map from the text of a unit, and the number before it, to SI factor and dimension.
+
+It raises `ValueError` if the unit is invalid.
+"""
 
 _DEEPEST = 30
 """Largest nesting depth of parentheses, signs and powers."""
@@ -43,7 +46,7 @@ def parse_expression(
     unit : str
         Unit of the value; empty for a dimensionless number.
     units : callable
-        Map from the text of a unit to its SI factor and dimension.
+        Map from the text of a unit, and the number before it, to its SI factor and dimension.
 
     Raises
     ------
@@ -51,7 +54,7 @@ def parse_expression(
         One-line message with the position of the fault in the text.
     """
     found = _ExpressionParser(text, known, units).parse()
-    dimension = units(unit)[1] if unit else Dimension()
+    dimension = units(unit, 1.0)[1] if unit else Dimension()
     if not found.dimension.same(dimension):
         needed = unit or "a dimensionless number"
         raise fault(found.start, f"the value has the unit {found.dimension}; needs {needed}")
@@ -218,7 +221,7 @@ class _ExpressionParser:
         if end <= start:
             return _Parsed(number, Dimension(), token.start)
         try:
-            factor, dimension = self._units(self._text[start:end])
+            factor, dimension = self._units(self._text[start:end], number)
         except ValueError as error:
             raise fault(start, str(error)) from None
         if not np.isfinite(number * factor):

@@ -66,7 +66,7 @@ def parse_region(text: str, units: Units) -> Region:
     ValueError
         One-line message with the faulty part of the text.
     """
-    length = units("m")[1]
+    length = units("m", 1.0)[1]
     known = dict.fromkeys(COORDINATES, length)
 
     def parsed(part: str) -> Expression:

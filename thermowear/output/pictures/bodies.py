@@ -17,8 +17,8 @@ from scipy.spatial import cKDTree
 
 from ...results import FIELDS
 from .. import tables
-from ..files import contacts_of, name_at, picture, read_summary
-from .maps import is_surface
+from ..files import bodies_of, contacts_of, name_at, picture, read_summary
+from .kinds import is_surface
 from .panels import (
     MAP_STYLE,
     Extent,
@@ -186,28 +186,28 @@ def _draw_windows(
 
 def _draw_solids(folder: Path) -> None:
     """Draw 3D bodies, clipped in the middle of the contact."""
-    from .faces import draw_faces
-    from .solids import draw_solids, read_grid
+    from .in_space.faces import draw_faces
+    from .in_space.solids import clipped, close_up, displaced, draw_solids, middle, read_grid
 
     interfaces, grid = _interfaces(folder), read_grid(folder / "fields.vtu")
-    interface = interfaces[0]
-    draw_solids(folder / "bodies.png", grid, interface)
+    y = middle(interfaces[0])
+    cut = clipped(grid, y)
+    draw_solids(folder / "bodies.png", cut, y, close=close_up(interfaces[0], grid))
+    factor = _magnification(grid.points, 1e3 * grid["displacement_m"])
+    draw_solids(folder / "deformed.png", displaced(cut, factor), y, _title(factor))
     for contact, face in zip(contacts_of(folder), interfaces, strict=True):
         draw_faces(folder / picture("faces", contact), grid, face, _seen(folder, contact))
-    factor = _magnification(grid.points, 1e3 * grid["displacement_m"])
-    grid.points = grid.points + factor * 1e3 * grid["displacement_m"]
-    draw_solids(folder / "deformed.png", grid, interface, _title(factor))
 
 
 def _seen(folder: Path, contact: str):
     """Body that bears the face of a contact in its picture: the second one."""
-    from .faces import Seen
+    from .in_space.faces import Seen
 
+    first, second = bodies_of(folder, contact)
     if not contact:
-        return Seen()
-    summary = read_summary(folder)
-    first, second = summary["contacts"][contact]["between"]
-    return Seen(1 + list(summary["bodies"]).index(second), f"{second}, seen from {first}")
+        return Seen(2, f"{second}, {first} removed")
+    number = 1 + list(read_summary(folder)["bodies"]).index(second)
+    return Seen(number, f"{second}, seen from {first}")
 
 
 def _title(factor: float) -> str:

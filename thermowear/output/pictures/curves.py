@@ -19,6 +19,7 @@ from .panels import (
     plot_columns,
     time_colors,
     time_legend,
+    time_text,
 )
 
 _FLAT = 1e-12  # range of the shape up to which a face is flat but for rounding errors [m]
@@ -114,7 +115,7 @@ def _draw_states(
     with column(path, len(shown), 3.0) as axes:
         for axis, name in zip(axes, shown, strict=True):
             for (time, data), color in zip(found.items(), time_colors(len(found)), strict=True):
-                plot_along(axis, data, name, color=color, label=f"{time:.4g} s")
+                plot_along(axis, data, name, color=color, label=time_text(time, max(found)))
             axis.set_ylabel(final.quantities[name].axis)
             if name in downwards:
                 axis.invert_yaxis()
@@ -184,5 +185,6 @@ def draw_track(folder: Path, contact: str = "") -> None:
 
 def _at_times(folder: Path, stem: str, contact: str) -> dict[str, Path]:
     """Files of a table at the output times and at the end, by the labels of their times."""
-    files = {f"{time:.4g} s": path for time, path in states(folder, stem, contact).items()}
+    found = states(folder, stem, contact)
+    files = {time_text(time, max(found)): path for time, path in found.items()}
     return files | {"end": folder / name_at(stem, None, contact)}

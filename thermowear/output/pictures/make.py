@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
@@ -13,41 +13,11 @@ from ...balances import violated
 from ...errors import CaseError, ComputationError
 from ...geometry.mesh.mixed import AnyMesh
 from ...geometry.mesh.outside import outside
-from ..files import contacts_of, name_at, picture, read_summary
+from ..files import contacts_of, name_at, read_summary
 from ..hot_spot_solid import HOT_SPOTS
 from ..rendering import PictureJob, Renderer, attempt
-from ..tables import MissingColumnError
-from . import curves, maps, over_time
-from .animation import FPS, check_animation, has_frames
-from .hot_spots import draw_hot_spots
-from .modes import draw_modes
+from .kinds import FPS, has_frames, is_surface
 
-_ALONG_A_LINE: dict[str, Callable[..., None]] = {
-    "interface": curves.draw_interface,
-    "profile": curves.draw_profile,
-    "wear": curves.draw_wear,
-    "coating": curves.draw_coating,
-    "mode": draw_modes,
-    "friction": curves.draw_friction,
-    "track": curves.draw_track,
-}
-_OVER_A_SURFACE: dict[str, Callable[..., None]] = {
-    "interface": maps.draw_interface_maps,
-    "wear": maps.draw_wear_maps,
-    "coating": maps.draw_coating_maps,
-    "friction": maps.draw_friction_maps,
-    "track": maps.draw_track_maps,
-    "mode": draw_modes,
-}
-_OF_THE_INTERFACE = ("wear", "coating")
-"""Pictures drawn from ``interface.csv`` that have no table of their own."""
-_OTHERS: dict[str, Callable[..., None]] = {
-    "history": over_time.draw_history,
-    "heat": over_time.draw_heat,
-    "loads": over_time.draw_loads,
-    "cycles": over_time.draw_cycles,
-    "hot_spots": draw_hot_spots,
-}
 _ANIMATION_TIMEOUT = 1800.0  # [s]
 
 
@@ -77,30 +47,17 @@ def make_pictures(folder: Path, renderer: Renderer | None = None) -> list[str]:
     needed = name_at("interface", None, contacts_of(folder)[0])
     if not (folder / needed).is_file():
         raise CaseError(f"{folder}: contains no {needed}; not a results folder of a finished run")
-    in_space = maps.is_surface(folder)
+    in_space = is_surface(folder)
     jobs = _of_the_bodies(folder, in_space)
     with _drawing(list(jobs.values()), renderer) as reasons:
-        notes = _draw_curves(folder, in_space)
+        from .from_tables import draw_tables  # loads matplotlib while bodies are rendered
+
+        notes = draw_tables(folder, in_space)
     notes += [f"{folder}: not balanced: {line}" for line in violated(read_summary(folder))]
     if not (folder / "fields.vtu").is_file():
         return [*notes, f"{folder}: no fields.vtu, so no pictures of the bodies"]
     failed = [(what, why) for what, why in zip(jobs, reasons, strict=True) if why]
     return notes + [f"{what} could not be drawn: {why}" for what, why in failed]
-
-
-def _draw_curves(folder: Path, in_space: bool) -> list[str]:
-    """Draw curves and maps from the tables; returns missing pictures with reasons."""
-    notes = []
-    first = _OVER_A_SURFACE if in_space else _ALONG_A_LINE
-    contacts = contacts_of(folder)
-    each = [(name, draw, (contact,)) for contact in contacts for name, draw in first.items()]
-    for name, draw, contact in [*each, *((name, draw, ()) for name, draw in _OTHERS.items())]:
-        try:
-            if name in _OF_THE_INTERFACE or (folder / name_at(name, None, *contact)).is_file():
-                draw(folder, *contact)
-        except MissingColumnError as reason:
-            notes.append(f"{folder}: no {picture(name, *contact)}, as {reason}")
-    return notes
 
 
 def _of_the_bodies(folder: Path, in_space: bool) -> dict[str, PictureJob]:
@@ -155,8 +112,10 @@ def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:
     ComputationError
         If drawing fails.
     """
+    from .animation import check_animation
+
     check_animation(folder, path)
-    _draw(_animation(folder, path, fps, maps.is_surface(folder)), path)
+    _draw(_animation(folder, path, fps, is_surface(folder)), path)
 
 
 def make_mesh_picture(mesh: AnyMesh, path: Path) -> None:

@@ -14,9 +14,9 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from .. import tables
-from ..files import contacts_of, name_at, picture
+from ..files import name_at, picture
 from .curves import coated_bodies, final_time, interface_panels, worn_bodies
-from .panels import MAP_STYLE, draw_colors, label_coordinates, panels
+from .panels import MAP_STYLE, draw_colors, label_coordinates, panels, time_text
 
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
 _LINES = 8
@@ -25,8 +25,6 @@ _ARROWS = 22
 _SMALL = 0.02
 """Part of the largest value from which arrows are drawn."""
 _STATUS_COLORS = ListedColormap(["white", "tab:blue", "tab:orange"])
-_SPACES = ("figure.constrained_layout.wspace", "figure.constrained_layout.hspace")
-_STYLE = MAP_STYLE | dict.fromkeys(_SPACES, 0.06)
 _LARGEST_ANGLE = 100.0
 """Largest angle of a long boundary triangle [degrees]; larger ones lie outside the face."""
 _SHORT = 0.1
@@ -37,12 +35,6 @@ _FEW = 6
 _GAP, _LONG, _ROUNDS = 0.8, 6.0, 4
 """Area of a triangle relative to that of its corners above which it lies across a gap; length of a
 side relative to the root of a point's area, and number of triangles beside it that do so, too."""
-
-
-def is_surface(folder: Path) -> bool:
-    """Test whether the contact points of a results folder form a surface, not a line."""
-    data = tables.read(folder / name_at("interface", None, contacts_of(folder)[0]))
-    return "s" in data and bool(np.isnan(data["s"]).all())
 
 
 def draw_interface_maps(folder: Path, contact: str = "") -> None:
@@ -63,7 +55,7 @@ def draw_wear_maps(folder: Path, contact: str = "") -> None:
     data = tables.read(folder / name_at("interface", None, contact))
     names = worn_bodies(data)
     if names:
-        _draw(folder / picture("wear", contact), data, names, f"wear after {end:.4g} s")
+        _draw(folder / picture("wear", contact), data, names, f"wear after {time_text(end)}")
 
 
 def draw_coating_maps(folder: Path, contact: str = "") -> None:
@@ -74,7 +66,7 @@ def draw_coating_maps(folder: Path, contact: str = "") -> None:
     data = tables.read(folder / name_at("interface", None, contact))
     names = coated_bodies(data)
     if names:
-        _draw(folder / picture("coating", contact), data, names, f"coating after {end:.4g} s")
+        _draw(folder / picture("coating", contact), data, names, f"coating after {time_text(end)}")
 
 
 def draw_friction_maps(folder: Path, contact: str = "") -> None:
@@ -147,7 +139,7 @@ def _maps(path: Path, triangles: Triangulation, count: int, title: str = ""):
     ratio = np.clip(np.ptp(triangles.y) / np.ptp(triangles.x), 0.3, 2.5)
     size = (_LONGER_SIDE / max(1.0, ratio) + 2.2, _LONGER_SIDE * min(1.0, ratio) + 0.8)
     margin = (0.0, 0.3 if title else 0.0)
-    options: dict[str, Any] = {"margin": margin, "style": _STYLE, "crop": True}
+    options: dict[str, Any] = {"margin": margin, "style": MAP_STYLE, "crop": True}
     return panels(path, count, 2, size, **options)
 
 

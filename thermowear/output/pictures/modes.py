@@ -10,7 +10,8 @@ import numpy as np
 
 from .. import tables
 from ..files import name_at, picture
-from .maps import is_surface, triangulated
+from .kinds import is_surface
+from .maps import triangulated
 from .panels import abscissa, column, label_coordinates, panels
 
 _TITLE = 38  # characters per line of a title

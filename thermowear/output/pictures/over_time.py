@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 
 from .. import tables
 from ..files import bodies_of, contacts_of
-from .panels import BODIES, column, from_zero, plot_columns
+from .panels import BODIES, column, from_zero, plot_columns, times
 
 _ROWS = 6  # of a legend of bodies or contacts
 _WIDTH = 1.8  # of a column of that legend [inches]
@@ -33,7 +33,7 @@ def draw_history(folder: Path) -> None:
             _legend(upper, len(contacts))
         upper.set_xscale("log")
         from_zero(upper)
-        upper.set_xlabel(f"{data.quantities['time'].axis}, logarithmic")
+        upper.set_xlabel(f"{times(data)[0]}, logarithmic")
         for axis in lower:
             if contacts:
                 _plot_by_body(axis, folder, contacts, "wear_volume", np.add)
@@ -142,9 +142,10 @@ def _plot_by_body(
     several = mpl.colormaps["tab20" if len(shown) > 10 else "tab10"]
     axis.set_prop_cycle(color=several(range(max(len(shown), 1))))
     quantity = data.quantities[f"{name}_1"].of_both
+    label, time = times(data)
     for body, values in shown.items():
-        axis.plot(data.drawn("time"), quantity.drawn(values), label=body)
-    axis.set_xlabel(data.quantities["time"].axis)
+        axis.plot(time, quantity.drawn(values), label=body)
+    axis.set_xlabel(label)
     axis.set_ylabel(quantity.wrapped)
     _legend(axis, len(shown))
 

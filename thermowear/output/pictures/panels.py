@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.tri import Triangulation
 
 from ..tables import TableColumns
+from .saving import DPI, save
 
 STYLE: dict[str, Any] = {k: v for k, v in mpl.rcParamsDefault.items() if k != "backend"} | {
     "font.size": 10,
@@ -29,7 +30,8 @@ STYLE: dict[str, Any] = {k: v for k, v in mpl.rcParamsDefault.items() if k != "b
     "legend.frameon": False,
 }
 """Complete settings, so that none is taken from a ``matplotlibrc`` in the current folder."""
-MAP_STYLE = STYLE | {"axes.grid": False}
+_SPACES = ("figure.constrained_layout.wspace", "figure.constrained_layout.hspace")
+MAP_STYLE = STYLE | {"axes.grid": False} | dict.fromkeys(_SPACES, 0.06)
 BODIES = ("tab:blue", "tab:orange")
 _SINGULAR, _USUAL = 3.0, 0.9
 """Peaks are clipped if they exceed the first factor times the quantile of the second."""
@@ -47,13 +49,13 @@ COLORS = {
     "slip": "plasma",
     "dissipated": "magma_r",
 }
+_HOUR, _LONG = 3600.0, 2.0
+"""Seconds of an hour, and hours from which times are shown in hours."""
 SMALL_CONTACT = 0.15
 """Size of a contact relative to the bodies, below which it gets its own window."""
 _WINDOW_SIZE = 3.0  # width of that window relative to the size of the contact
 _MARGIN = 0.02
 _PERCENTILE = 99.5  # percentile of the samples at the end of the colour range
-_COMPRESSION = {"compress_level": 4}
-"""Half the time of the default for files that are a tenth larger."""
 
 Extent = tuple[float, float, float, float]  # left, right, lower, upper [mm]
 Limits = tuple[float, float]
@@ -93,12 +95,12 @@ def panels(
     down = -(-count // across)
     size = (panel[0] * across + margin[0], panel[1] * down + margin[1])
     with mpl.rc_context(style):
-        figure = Figure(figsize=size, layout="constrained", dpi=150)
+        figure = Figure(figsize=size, layout="compressed" if crop else "constrained", dpi=DPI)
         axes = figure.subplots(down, across, squeeze=False, **options)
         for unused in axes.ravel()[count:]:
             unused.set_visible(False)
         yield figure, axes
-        figure.savefig(path, bbox_inches="tight" if crop else None, pil_kwargs=_COMPRESSION)
+        save(figure, path, crop)
 
 
 @contextmanager
@@ -135,8 +137,9 @@ def plot_along(axis: Axes, data: TableColumns, name: str, line: str = "-", **opt
 
 def plot_columns(axis: Axes, data: TableColumns, x: str, y: str, **options) -> None:
     """Plot a column over another one, and label both axes."""
-    axis.plot(data.drawn(x), data.drawn(y), **options)
-    axis.set_xlabel(data.quantities[x].axis)
+    label, values = times(data) if x == "time" else (data.quantities[x].axis, data.drawn(x))
+    axis.plot(values, data.drawn(y), **options)
+    axis.set_xlabel(label)
     axis.set_ylabel(data.quantities[y].of_both.axis)
 
 
@@ -145,6 +148,23 @@ def label_coordinates(axis: Axes, data: TableColumns) -> None:
     axis.set_aspect("equal")
     axis.set_xlabel(data.quantities["x"].axis)
     axis.set_ylabel(data.quantities["y"].axis)
+
+
+def times(data: TableColumns) -> tuple[str, np.ndarray]:
+    """Label and values of a time axis, in hours for long runs."""
+    unit, scale = _time_unit(data["time"].max(initial=0.0))
+    return data.quantities["time"].shown_in(unit).axis, scale * data["time"]
+
+
+def time_text(time: float, end: float | None = None) -> str:
+    """Format a time with four digits, in the unit that suits the end of the run."""
+    unit, scale = _time_unit(time if end is None else end)
+    return f"{float(f'{scale * time:.4g}'):g} {unit}"
+
+
+def _time_unit(end: float) -> tuple[str, float]:
+    """Unit for times up to the end of a run, and its scale from seconds."""
+    return ("h", 1.0 / _HOUR) if end > _LONG * _HOUR else ("s", 1.0)
 
 
 def time_colors(count: int, first: float = 0.9) -> np.ndarray:

@@ -10,11 +10,11 @@ from typing import NamedTuple
 WARM_UP = ("warm up", ())
 """Kind and arguments of a drawing that loads what all others need."""
 _DRAWN_BY = {
-    WARM_UP[0]: ("solids", "warm_up"),
+    WARM_UP[0]: ("in_space.solids", "warm_up"),
     "bodies": ("bodies", "draw_bodies"),
-    "hot spots": ("hot_spot_views", "draw_views"),
+    "hot spots": ("in_space.hot_spot_views", "draw_views"),
     "animation": ("animation", "draw_animation"),
-    "mesh": ("mesh", "draw_mesh"),
+    "mesh": ("in_space.mesh", "draw_mesh"),
 }
 """Module of the pictures, imported only where it draws, and function of each kind."""
 

@@ -10,8 +10,6 @@ import json
 import os
 import re
 import tomllib
-from collections.abc import Mapping
-from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -19,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import CaseError
-from ...results.quantity import TABLES, Quantity, from_key
+from ...results.quantity import TABLES, from_key
 from ...results.summary_keys import of_key
 from ..files import (
     PICTURES,
@@ -31,9 +29,10 @@ from ..files import (
     write_text,
 )
 from ..tables import TableColumns, read
-from .figures import NOTHING, balances, key_figures, number, table_lines, verdict
+from .figures import NOTHING, balances, key_figures, table_lines, verdict
+from .shown_tables import shown_table, table_of
 
-_ROWS = 20
+_WIDE = 1300  # pixels from which a picture gets a whole row
 _PNG = b"\x89PNG\r\n\x1a\n"
 _UNPRINTABLE = re.compile("[^\t\n\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
@@ -124,7 +123,7 @@ def read_contents(folder: Path) -> dict[str, Any]:
             "pictures": list(_pictures(folder)),
             "drawable": (folder / "interface.csv").is_file(),
             "tables": list(_tables(folder, summary)),
-            "case": table_lines(case, "case"),
+            "case": table_lines({k: case[k] for k in case if k != "title"}, "case"),
             "case_text": text,
             "run": table_lines(run, "run"),
             "folder": folder,
@@ -168,7 +167,8 @@ def embedded(path: Path, caption: str):
     content = path.read_bytes() if path.is_file() else b""
     if content.startswith(_PNG):
         encoded = base64.b64encode(content).decode("ascii")
-        yield {"name": path.stem, "caption": caption, "data": encoded}
+        wide = int.from_bytes(content[16:20]) > _WIDE
+        yield {"name": path.stem, "caption": caption, "data": encoded, "wide": wide}
 
 
 def _tables(folder: Path, summary: dict[str, Any]):
@@ -180,43 +180,7 @@ def _tables(folder: Path, summary: dict[str, Any]):
         path = folder / f"{table.stem}.csv"
         if path.is_file():
             columns = read(path)
-            yield shown_table(table.caption, columns, columns.quantities, path.name)
-
-
-@dataclass(frozen=True)
-class ShownTable:
-    """Table of a report as text.
-
-    Attributes
-    ----------
-    caption, note : str
-    heads : list of Quantity
-    rows : list of list of str
-    """
-
-    caption: str
-    note: str
-    heads: list[Quantity]
-    rows: list[list[str]]
-
-
-def shown_table(
-    caption: str,
-    columns: Mapping[str, np.ndarray],
-    quantities: Mapping[str, Quantity],
-    source: str,
-) -> ShownTable:
-    """Table of at most twenty rows, including first and last, of the columns with content."""
-    total = len(next(iter(columns.values()), ()))
-    chosen = np.unique(np.linspace(0, total - 1, min(total, _ROWS)).round().astype(int))
-    full = {name: v for name, v in columns.items() if (np.isfinite(v) & (v != 0)).any()}
-    heads = [quantities[name] for name in full]
-    drawn = [head.drawn(values[chosen]) for head, values in zip(heads, full.values(), strict=True)]
-    rows = [[number(float(value)) for value in row] for row in zip(*drawn, strict=True)]
-    note = f"{len(chosen)} of {total} rows of {source}" if len(chosen) < total else f"from {source}"
-    if len(full) < len(columns):
-        note += "; empty columns are left out"
-    return ShownTable(caption, note, heads, rows)
+            yield table_of(columns, table.caption, path.name)
 
 
 def output_times(folder: Path, end: float | None) -> dict[str, np.ndarray]:

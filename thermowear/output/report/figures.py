@@ -17,6 +17,8 @@ from ...results.quantity import multiple, split_key
 from ...results.summary_keys import GROUPS, OTHER, PHASES, group_of, of_key
 
 NOTHING = "–"
+NOISE = 1e-13
+"""Size of rounding errors, relative to the largest number in the same unit."""
 _QUANTITY = re.compile(r"([-+]?[.\d]+(?:e[-+]?\d+)?) (\S+)")
 _POWERS = str.maketrans({"2": "²", "3": "³", "^": None})
 
@@ -43,11 +45,14 @@ class Figure:
 
 def key_figures(summary: dict[str, Any]) -> dict[str, list[Figure]]:
     """Key figures of all keys of a summary by group; keys without a group are in "Other"."""
+    sizes = _sizes(summary)
     keys = {name: [q.header for q in known] for name, known in GROUPS.items()}
     keys[OTHER] = [key for key in summary if group_of(key) == OTHER and key != "title"]
     groups = {}
     for name, own in keys.items():
-        found = [figure for key in own if key in summary for figure in _figures(key, summary[key])]
+        found = [
+            figure for key in own if key in summary for figure in _figures(key, summary[key], sizes)
+        ]
         if found:
             groups[name] = found
     return groups
@@ -84,20 +89,45 @@ def _worst_of_bodies(summary: dict[str, Any]) -> list[Figure]:
     ]
 
 
+def _sizes(summary: dict[str, Any]) -> dict[str, float]:
+    """Largest number of a summary in each SI unit."""
+    sizes: dict[str, float] = {}
+    for key, value in summary.items():
+        si = of_key(key).si
+        sizes[si] = max([sizes.get(si, 0.0), *map(abs, _numbers(value))])
+    return sizes
+
+
+def without_noise(value: Any, size: float) -> Any:
+    """Value with zero for a number that is a rounding error of others of a size."""
+    if isinstance(value, float) and abs(value) < NOISE * size:
+        return 0.0
+    return value
+
+
 def figure_text(key: str, value: Any, entry: str = "") -> str:
     """Format a value of a summary, or of one of its tables, in the unit that suits its size."""
     shown = of_key(key)
     # differences of temperatures are in K
     if shown.unit == "°C" and isinstance(value, int | float):
         return f"{number(shown.drawn(value))} °C"
+    if key.endswith("_bytes") and isinstance(value, int | float):
+        return _memory(value)
     return quantity(value, split_key(entry)[1] or shown.si)
 
 
-def _figures(key: str, value: Any) -> list[Figure]:
+def _memory(size: float) -> str:
+    """Format a number of bytes."""
+    unit, scale = ("GB", 1e-9) if size >= 1e9 else ("MB", 1e-6)
+    return f"{scale * size:.3g} {unit}"
+
+
+def _figures(key: str, value: Any, sizes: dict[str, float]) -> list[Figure]:
     """One line for a value, or one line per entry of a table."""
-    label = of_key(key).label
+    label, si = of_key(key).label, of_key(key).si
     if not isinstance(value, dict) or not value:
-        return [Figure(label, figure_text(key, value), f"{key} = {value}")]
+        shown = without_noise(value, sizes[si]) if si else value
+        return [Figure(label, figure_text(key, shown), f"{key} = {value}")]
     return [
         Figure(
             f"{label}: {PHASES.get(entry) or split_key(entry)[0]}",
@@ -231,6 +261,8 @@ def _shown(value: Any) -> str:
     """Format a value of a case file; quantities such as ``"0.02 m"`` in a unit that suits them."""
     if isinstance(value, list):
         return ", ".join(map(_shown, value))
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {_shown(inner)}" for key, inner in value.items())
     written = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
     if written is None:
         return quantity(value, "")

@@ -14,7 +14,8 @@ from ...results.quantity import from_key
 from ...results.summary_keys import of_key
 from .. import tables
 from ..files import model_of
-from ..pictures.maps import is_surface, triangulated
+from ..pictures.kinds import is_surface
+from ..pictures.maps import triangulated
 from ..pictures.panels import (
     MAP_STYLE,
     clip_singular,

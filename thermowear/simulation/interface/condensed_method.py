@@ -136,7 +136,9 @@ class CondensedMethod:
             else:
                 part = grown
         if not is_stable(compliance, thermal, self._contact.modes, guess.warm_start.active):
-            raise NoEquilibrium("contact: no equilibrium found that small perturbations leave as it is")
+            raise NoEquilibrium(
+                "contact: no equilibrium found that small perturbations leave as it is"
+            )
         return guess
 
     def point_compliance(self, points) -> np.ndarray:

@@ -94,7 +94,9 @@ class CadFile(MeshFile):
             CadRequest(
                 bodies=body_requests(self, mesh),
                 surfaces=tuple(
-                    SurfaceRequest(name, of.key, self._choices(name), self._body(of.body))
+                    SurfaceRequest(
+                        name, of.key, self._choices(name), self._body(of.body), self._reason(name)
+                    )
                     for name, of in found.items()
                     if not (auto and name in self.contact)
                 ),
@@ -112,6 +114,16 @@ class CadFile(MeshFile):
         """Faces of a surface; by its name as a label unless it is listed."""
         tables = self.surface_names.get(name)
         return (FaceChoice(name),) if tables is None else tuple(t.choice() for t in tables)
+
+    def _reason(self, name: str) -> str:
+        """Key that assigns a surface to one of the bodies, for messages."""
+        roles = {self.held: ("held", 0), self.fixed: ("fixed", 1)}
+        roles |= {face: ("contact", index) for index, face in enumerate(self.contact)}
+        if name not in roles:
+            return ""
+        key, index = roles[name]
+        which = ("first", "second")[index]
+        return f"geometry.{key} needs a surface of the {which} body, {self.bodies[index]!r}"
 
     def _body(self, index: int | None) -> str | None:
         return None if index is None else self.bodies[index]

@@ -12,26 +12,19 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from ....errors import CaseError
-from ...files import FRAMES, contacts_of, name_at
-from ...frames import frame_files
-from ..maps import is_surface
+from ...files import contacts_of, name_at
+from ..kinds import FPS, has_frames, is_surface
 from ..panels import STYLE, color_map
 from .panels import SectionPanel, SolidPanel, TimeCurve, contact_curves, face_maps
 from .states import FrameSequence, FrameState, ScenePanel, read_frames
 from .writers import GIF, MP4, common_palette, ffmpeg, write_gif, write_mp4
 
-FPS = 8.0
 _DPI = 100
 _WIDTH, _HEIGHT = 9.0, 5.6  # inches
 _FLAT = 0.4
 """Height over width of the bodies below which they are above the curves, else beside them."""
 _SCALE = 1.5  # width of colour bar and labels of the bodies [inches]
 _STYLE = STYLE | {"font.size": 9}
-
-
-def has_frames(folder: Path) -> bool:
-    """Test whether a results folder has frames."""
-    return bool(frame_files(folder / FRAMES))
 
 
 def check_animation(folder: Path, path: Path) -> None:

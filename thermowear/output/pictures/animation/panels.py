@@ -28,6 +28,7 @@ from ..panels import (
     proportion,
     whole,
 )
+from ..saving import content
 from .states import FrameSequence, FrameState, ScenePanel
 
 _SCALE = 0.05  # width of the colour bar relative to the panel
@@ -77,7 +78,7 @@ class SolidPanel(ScenePanel):
     """Panel with undeformed 3D bodies and a fixed camera."""
 
     def __init__(self, frames: FrameSequence):
-        from .. import solids
+        from ..in_space import solids
 
         self._frames, self._solids = frames, solids
         self._y = solids.middle(frames.states[-1].interface)
@@ -86,7 +87,7 @@ class SolidPanel(ScenePanel):
             *(np.concatenate([surface[frames.field] for surface in parts]) for parts in surfaces)
         )
         ends = self._rendered(frames.states[0]), self._rendered(frames.states[-1])
-        self._seen = solids.content(*ends)
+        self._seen = content(*ends)
         self._blank = np.full_like(ends[0][self._seen], 255)
         self.shape = self._blank.shape[0] / self._blank.shape[1]
 

@@ -11,27 +11,30 @@ from typing import NamedTuple
 import numpy as np
 import pyvista
 
-from ...results import FIELDS
-from ..tables import TableColumns
-from .maps import triangulated
-from .panels import Limits, color_limits, color_map
+from ....results import FIELDS
+from ...tables import TableColumns
+from ..maps import triangulated
+from ..panels import Limits, color_limits, color_map
+from ..saving import cropped
 from .solids import (
+    GREY,
     SHADING,
-    View,
-    add_edges,
-    add_surfaces,
-    cropped,
-    draw_views,
+    Solid,
+    add_grey,
+    add_lines,
+    add_solid,
     focus_on,
     rendering,
+    solid_of,
 )
+from .views import View, draw_views
 
 _ABOVE = (0.45, -1.0, 0.9)
 """Direction of the camera from the face."""
 _RELIEF = 0.25  # height of the magnified shape relative to the face
 _WIDE = 1.8  # width of the view of a small face relative to it
+_SOME = 200  # points of a face that tell its side
 _LIFTED = 2e-3  # offset of the face from its body, relative to the face
-_GREY = "lightgray"  # grey of bodies without a field
 
 
 class Seen(NamedTuple):
@@ -44,8 +47,8 @@ class Seen(NamedTuple):
     title : str
     """
 
-    number: int = 2
-    title: str = "body 2, body 1 removed"
+    number: int
+    title: str
 
 
 def draw_faces(path: Path, grid, interface: TableColumns, seen: Seen) -> None:
@@ -64,13 +67,13 @@ def draw_faces(path: Path, grid, interface: TableColumns, seen: Seen) -> None:
     body = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == seen.number))
     surface = body.clean(tolerance=1e-6 * body.length).extract_surface()
     focus = focus_on(interface, surface, _WIDE)
-    outwards = _outwards(face, surface)
-    views = [_pressure(face, surface, focus, interface, outwards, seen.title)]
+    outwards, bearer = _outwards(face, surface), solid_of([surface])
+    views = [_pressure(face, bearer, focus, interface, outwards, seen.title)]
     if "temperature" in grid.point_data:
-        views.append(_temperature(surface, focus, outwards, seen.title))
+        views.append(_temperature(bearer, focus, outwards, seen.title))
     if np.ptp(face["shape"]) > 0.0:
         views.append(_shape(face, interface, outwards))
-    draw_views(path, [views])
+    draw_views(path, [views[:2], views[2:]])
 
 
 def contact_face(interface: TableColumns):
@@ -94,7 +97,8 @@ def magnification(size: float, heights: np.ndarray) -> float:
 def _outwards(face, surface) -> float:
     """Direction along z that a face of a body looks to: the sign of its normal, 1 or -1."""
     oriented = surface.compute_normals(point_normals=False, auto_orient_normals=True)
-    at_face = oriented.find_closest_cell(face.points)
+    some = face.points[:: max(1, face.n_points // _SOME)]
+    at_face = oriented.find_closest_cell(some)
     return 1.0 if oriented.cell_data["Normals"][at_face, 2].mean() >= 0.0 else -1.0
 
 
@@ -109,25 +113,26 @@ def _camera(outwards: float) -> tuple[float, float, float]:
     return x, y, outwards * z
 
 
-def _pressure(face, surface, focus, interface: TableColumns, outwards: float, title: str) -> View:
+def _pressure(
+    face, body: Solid, focus, interface: TableColumns, outwards: float, title: str
+) -> View:
     """Pressure on the face of a body."""
     limits = color_limits(face["pressure"])
     shown = face.copy()
     shown.points[:, 2] += outwards * _LIFTED * _size(face)
     with rendering(_camera(outwards), focus) as (plotter, picture):
-        plotter.add_mesh(surface, color=_GREY, **SHADING)
-        add_edges(plotter, surface)
+        add_grey(plotter, body)
         _add_face(plotter, shown, "pressure", limits)
     label, largest = interface.quantities["pressure"].axis, float(face["pressure"].max())
     return View(cropped(picture[0]), "pressure", label, limits, largest, title)
 
 
-def _temperature(surface, focus, outwards: float, title: str) -> View:
+def _temperature(body: Solid, focus, outwards: float, title: str) -> View:
     """Temperature of a body, its contact face included."""
-    values = surface["temperature"]
+    values = body.surface["temperature"]
     limits = color_limits(values)
     with rendering(_camera(outwards), focus) as (plotter, picture):
-        add_surfaces(plotter, [surface], "temperature", limits)
+        add_solid(plotter, body, "temperature", limits)
     label = FIELDS["temperature"].axis
     return View(cropped(picture[0]), "temperature", label, limits, float(values.max()), title)
 
@@ -140,10 +145,10 @@ def _shape(face, interface: TableColumns, outwards: float) -> View:
     worn.points[:, 2] += outwards * factor * 1e-3 * face["shape"]
     base.points[:, 2] -= outwards * _LIFTED * _size(face)
     with rendering(_camera(outwards)) as (plotter, picture):
-        plotter.add_mesh(base, color=_GREY, **SHADING)
+        plotter.add_mesh(base, color=GREY, **SHADING)
         _add_face(plotter, worn, "shape", limits)
     label = interface.quantities["shape"].axis
-    title = f"shape magnified {factor:g} times"
+    title = f"worn shape of the contact face, magnified {factor:g} times"
     return View(cropped(picture[0]), "shape", label, limits, limits[1], title)
 
 
@@ -155,4 +160,4 @@ def _add_face(plotter, face, name: str, limits: Limits) -> None:
     outline = face.extract_feature_edges(
         feature_edges=False, non_manifold_edges=False, manifold_edges=False
     )
-    plotter.add_mesh(outline, color="black", line_width=2, lighting=False)
+    add_lines(plotter, outline)

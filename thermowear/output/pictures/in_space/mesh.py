@@ -13,8 +13,9 @@ import numpy as np
 import pyvista
 from matplotlib.patches import Patch
 
-from .panels import MAP_STYLE, panels
-from .solids import add_edges, cropped, rendering
+from ..panels import MAP_STYLE, panels
+from ..saving import cropped
+from .solids import add_lines, rendering, solid_of
 
 _VIEW = (4.6, 3.6)  # width and height of a view [inches]
 _VIEWS = {"from above": (0.55, -1.0, 0.8), "from below": (0.55, -1.0, -0.8)}
@@ -73,5 +74,5 @@ def _view(
                 ambient=0.6,
                 diffuse=0.4,
             )
-        add_edges(plotter, whole)
+        add_lines(plotter, solid_of([whole]).edges)
     return cropped(picture[0])

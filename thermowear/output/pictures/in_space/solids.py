@@ -6,38 +6,31 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import numpy as np
 import pyvista
 
-from ...results import FIELDS
-from ..tables import TableColumns
-from .panels import (
-    MAP_STYLE,
-    SMALL_CONTACT,
-    Limits,
-    add_color_bar,
-    color_limits,
-    color_map,
-    panels,
-)
+from ....results import FIELDS
+from ...tables import TableColumns
+from ..panels import SMALL_CONTACT, Limits, color_limits, color_map
+from ..saving import cropped
+from .views import View, draw_views
 
-PIXELS = (1400, 1100)
-_VIEW = (6.6, 5.2)  # largest width and height of a view [inches]
+PIXELS = (1600, 1257)
+"""Rendered pixels, half as many again as are shown in each direction: this smooths the edges."""
+LINE = 2.7  # width of a line [pixels]
 _CLOSE = 2.5  # width of a close-up relative to the contact
 _TINY = 0.08  # size of a contact with a close-up relative to the bodies
-_WHITE = 250  # least value of the channels of white
-_MARGIN = 0.01  # relative to the size of a picture
 _CAMERA = (0.55, -1.0, 0.6)  # direction of the camera from the bodies
 _EDGE_ANGLE = 40.0  # smallest angle between faces at a drawn edge [degrees]
 SHADING: dict[str, Any] = {
     "ambient": 0.6,
     "diffuse": 0.4,
     "smooth_shading": True,
-    "split_sharp_edges": True,
-    "feature_angle": _EDGE_ANGLE,
 }
+GREY = "lightgray"  # of bodies without a field
 _MERGED = 1e-6  # of the bodies' size
 _DEPTH_OFFSET = 1e-3
 _ROUNDED = 0.05
@@ -61,40 +54,49 @@ def middle(interface: TableColumns) -> float:
     return float(step * np.round((y.min() + y.max()) / 2 / step)) + 0.0
 
 
-def draw_solids(path: Path, grid, interface: TableColumns, title: str = "") -> None:
-    """Draw one panel per field, side by side; close-ups of a small contact below.
+def draw_solids(path: Path, surfaces: list, y: float, title: str = "", close=None) -> None:
+    """Draw one panel per field, side by side.
 
     Parameters
     ----------
     path : Path
-    grid : pyvista.UnstructuredGrid
-        Cells with the fields, see `read_grid`. The part with smaller y than the contact's middle is
-        removed.
-    interface : TableColumns
-        Contact points.
+    surfaces : list of pyvista.PolyData
+        Bodies with their fields, see `clipped`.
+    y : float
+        Position of the cut [mm].
     title : str
-        Remark on deformed bodies, of which there are no close-ups.
+        Remark on deformed bodies.
+    close : list of float, optional
+        Bounds of a close-up of the contact, drawn below, see `close_up`.
     """
-    y = middle(interface)
-    surfaces = clipped(grid, y)
-    rows = [_fields_of(surfaces)]
-    close = None if title else focus_on(interface, grid, _CLOSE, _TINY)
-    if close is not None:
-        rows.append(_fields_of(surfaces, close))
-    cut = f"cut at y = {y:.4g} mm"
-    draw_views(path, rows, "; ".join(filter(None, [title, cut])))
+    bodies = solid_of(surfaces)
+    rows = [_fields_of(bodies), *([_fields_of(bodies, close)] if close else [])]
+    draw_views(path, rows, "; ".join(filter(None, [title, f"cut at y = {y:.4g} mm"])))
 
 
-def _fields_of(surfaces: list, focus: list[float] | None = None) -> list[View]:
+def close_up(interface: TableColumns, bodies) -> list[float] | None:
+    """Bounds of a close-up of a contact that is small relative to the bodies; None if it is not."""
+    return focus_on(interface, bodies, _CLOSE, _TINY)
+
+
+def displaced(surfaces: list, factor: float) -> list:
+    """Surfaces with magnified displacements."""
+    moved = [surface.copy() for surface in surfaces]
+    for surface in moved:
+        surface.points = surface.points + factor * 1e3 * surface["displacement_m"]
+    return moved
+
+
+def _fields_of(bodies: Solid, focus: list[float] | None = None) -> list[View]:
     """Views of all fields, of the whole bodies or within bounds [mm]."""
     views = []
     for name in ("temperature", "von_mises"):
-        if name not in surfaces[0].point_data:
+        if name not in bodies.surface.point_data:
             continue
-        values = np.concatenate([_within(surface, name, focus) for surface in surfaces])
+        values = _within(bodies.surface, name, focus)
         limits = color_limits(values)
         with rendering(focus=focus) as (plotter, picture):
-            add_surfaces(plotter, surfaces, name, limits)
+            add_solid(plotter, bodies, name, limits)
         pixels = cropped(picture[0])
         views.append(View(pixels, name, FIELDS[name].axis, limits, float(values.max())))
     return views
@@ -137,64 +139,6 @@ def focus_on(
     return [float(end) for end in bounds.ravel()]
 
 
-class View(NamedTuple):
-    """Rendered bodies and the colours of a quantity.
-
-    Attributes
-    ----------
-    pixels : ndarray, shape (height, width, 3)
-    name, label : str
-        Quantity, and label of its colour bar.
-    limits : tuple of float
-    largest : float
-        Largest value, see `add_color_bar`.
-    title : str
-    """
-
-    pixels: np.ndarray
-    name: str
-    label: str
-    limits: Limits
-    largest: float
-    title: str = ""
-
-
-def draw_views(path: Path, rows: list[list[View]], title: str = "") -> None:
-    """Draw rows of views with the same heights in each row."""
-    width, height = _VIEW
-    shapes = np.array([[v.pixels.shape[1] / v.pixels.shape[0] for v in row] for row in rows])
-    widths = shapes.max(axis=0)
-    tall = min(height, width / float(widths.max()))
-    count, across = shapes.size, shapes.shape[1]
-    size = (tall * float(widths.mean()) + 1.2, tall + 0.3)
-    options: dict[str, Any] = {"style": MAP_STYLE, "crop": True, "width_ratios": widths}
-    with panels(path, count, across, size, **options) as (figure, axes):
-        for axis, view in zip(axes.flat, (v for row in rows for v in row), strict=True):
-            axis.imshow(view.pixels, interpolation="antialiased")
-            add_color_bar(axis, view.name, view.label, view.limits, view.largest)
-            axis.set_axis_off()
-            axis.set_title(view.title, fontsize=10)
-        if title:
-            figure.suptitle(title, fontsize=11)
-
-
-def cropped(picture: np.ndarray) -> np.ndarray:
-    """Picture without the white space around its content, except for a margin."""
-    return picture[content(picture)]
-
-
-def content(*pictures: np.ndarray) -> tuple[slice, slice]:
-    """Rows and columns of the content of equally large pictures, with a margin."""
-    drawn = np.any([np.any(picture < _WHITE, axis=2) for picture in pictures], axis=0)
-    if not drawn.any():
-        return np.s_[:, :]
-    rows, columns = (np.flatnonzero(drawn.any(axis=axis)) for axis in (1, 0))
-    margin = round(_MARGIN * max(pictures[0].shape))
-    first, last = max(rows[0] - margin, 0), rows[-1] + margin + 1
-    left, right = max(columns[0] - margin, 0), columns[-1] + margin + 1
-    return np.s_[first:last, left:right]
-
-
 def clipped(grid, y: float) -> list:
     """Surfaces of the bodies behind a plane normal to y, from the last body to the first.
 
@@ -215,40 +159,77 @@ def clipped(grid, y: float) -> list:
     return surfaces
 
 
+class Solid(NamedTuple):
+    """Bodies to be rendered.
+
+    Attributes
+    ----------
+    surface : pyvista.PolyData
+        Surfaces of all bodies, with normals for smooth shading between their edges.
+    edges : pyvista.PolyData
+        Sharp edges.
+    """
+
+    surface: Any
+    edges: Any
+
+
+def solid_of(surfaces: list) -> Solid:
+    """Prepare closed surfaces for any number of scenes."""
+    whole = surfaces[0].append_polydata(*surfaces[1:]) if len(surfaces) > 1 else surfaces[0]
+    edges = whole.extract_feature_edges(
+        feature_angle=_EDGE_ANGLE, boundary_edges=False, non_manifold_edges=False
+    )
+    surface = whole.compute_normals(
+        cell_normals=False, split_vertices=True, feature_angle=_EDGE_ANGLE
+    )
+    return Solid(surface, edges)
+
+
 def render(surfaces: list, name: str, limits: Limits) -> np.ndarray:
-    """Render surfaces, smoothly shaded between their edges, as pixels."""
+    """Render surfaces coloured by a quantity as pixels."""
     with rendering() as (plotter, picture):
-        add_surfaces(plotter, surfaces, name, limits)
+        add_solid(plotter, solid_of(surfaces), name, limits)
     return picture[0]
 
 
-def add_surfaces(plotter, surfaces: list, name: str, limits: Limits) -> None:
-    """Add surfaces coloured by a quantity, and their edges."""
+def add_solid(plotter, solid: Solid, name: str, limits: Limits) -> None:
+    """Add bodies coloured by a quantity, and their edges."""
     options = {"cmap": color_map(name), "clim": limits, "show_scalar_bar": False, **SHADING}
-    for surface in surfaces:
-        plotter.add_mesh(surface, scalars=name, **options)
-        add_edges(plotter, surface)
+    plotter.add_mesh(solid.surface, scalars=name, **options)
+    add_lines(plotter, solid.edges)
 
 
-def add_edges(plotter, surface) -> None:
-    """Add the sharp edges of a closed surface as black lines."""
-    edges = surface.extract_feature_edges(
-        feature_angle=_EDGE_ANGLE, boundary_edges=False, non_manifold_edges=False
-    )
-    if edges.n_points:
-        plotter.add_mesh(edges, color="black", line_width=2, lighting=False)
+def add_grey(plotter, solid: Solid) -> None:
+    """Add bodies in grey, and their edges."""
+    plotter.add_mesh(solid.surface, color=GREY, **SHADING)
+    add_lines(plotter, solid.edges)
+
+
+def add_lines(plotter, lines) -> None:
+    """Add black lines, if there are any."""
+    if lines.n_points:
+        plotter.add_mesh(lines, color="black", line_width=LINE, lighting=False)
 
 
 def warm_up() -> None:
     """Load what the first picture needs, by drawing one for nobody."""
-    with rendering() as (plotter, _):
+    with rendering() as (plotter, picture):
         plotter.add_mesh(pyvista.Sphere())
+    view = View(cropped(picture[0]), "pressure", "", (0.0, 1.0), 1.0)
+    with TemporaryDirectory() as folder:
+        draw_views(Path(folder) / "warm-up.png", [[view]])
 
 
 @cache
 def _plotter():
-    """Plotter for all pictures: shaders are compiled for each window."""
-    return pyvista.Plotter(off_screen=True, window_size=list(PIXELS))
+    """Plotter for all pictures: shaders are compiled for each window.
+
+    Multisampling costs three times as much as all else, and hardly shows at this resolution.
+    """
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(PIXELS))
+    plotter.render_window.SetMultiSamples(0)
+    return plotter
 
 
 @contextmanager
@@ -272,9 +253,9 @@ def rendering(direction=_CAMERA, focus=None) -> Iterator[tuple[Any, list[np.ndar
     plotter.enable_parallel_projection()
     plotter.camera_position = [np.array(direction), np.zeros(3), (0.0, 0.0, 1.0)]
     if focus is None:
-        plotter.add_axes(line_width=4)
+        plotter.add_axes(line_width=5)
     plotter.reset_camera(bounds=focus)
     plotter.camera.zoom(1.1)
     plotter.suppress_rendering = False
     plotter.render()
-    picture.append(plotter.screenshot(None, return_img=True))
+    picture.append(np.array(plotter.screenshot(None, return_img=True), order="C"))

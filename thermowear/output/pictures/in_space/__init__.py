@@ -1,0 +1,1 @@
+"""Pictures of bodies in space, drawn by pyvista in the rendering process."""

@@ -6,7 +6,8 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from thermowear.output.console import ConsoleProgress, print_summary
+from thermowear.output.console import print_summary
+from thermowear.output.progress import ConsoleProgress
 from thermowear.results import HistoryRow
 
 

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from thermowear.output.console import Terminal, print_summary
+from thermowear.output.console import print_summary
+from thermowear.output.progress import Terminal
 from thermowear.verification.cases.heat.moving_band import passed, surface
 from thermowear.verification.check import run_starter
 

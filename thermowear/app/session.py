@@ -12,9 +12,10 @@ from .. import load
 from ..case import Case, as_plain
 from ..errors import CaseError, ComputationError, UnwritableError
 from ..output.checkpoint import CHECKPOINT
-from ..output.console import ConsoleProgress, Terminal, print_discretisations, print_summary
+from ..output.console import print_discretisations, print_summary
 from ..output.files import writing
 from ..output.folder import ResultsFolder
+from ..output.progress import ConsoleProgress, Terminal
 from ..output.resuming import (
     ResumedFolder,
     about_checkpoint,

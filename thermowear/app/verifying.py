@@ -10,7 +10,8 @@ from ..errors import CaseError, ComputationError
 
 def verify(chosen) -> int:
     """Compare the program with reference solutions."""
-    from ..output.console import Terminal, print_checks
+    from ..output.console import print_checks
+    from ..output.progress import Terminal
     from ..verification import CASES, SLOW, all_checks
 
     unknown = [name for name in chosen.ids if name not in CASES]

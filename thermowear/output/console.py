@@ -1,10 +1,7 @@
-"""Console output: progress of a run, summary, and verification checks."""
+"""Console output at the end: summary, discretisations side by side, and verification checks."""
 
 from __future__ import annotations
 
-import os
-import sys
-import time
 from math import pi
 from typing import Any
 
@@ -14,78 +11,7 @@ from rich.table import Table
 
 from ..balances import errors_of, holds
 from ..results.summary_keys import PHASES, of_key
-
-_PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
-
-
-class Terminal(Console):
-    """Standard output; a closed pipe (``| head``) does not end a run."""
-
-    def on_broken_pipe(self) -> None:
-        self.quiet = True
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-class ConsoleProgress:
-    """Progress as one live line on a terminal, as plain lines otherwise.
-
-    Parameters
-    ----------
-    console : rich.console.Console
-    """
-
-    def __init__(self, console: Console):
-        self._console = console
-        self._status = console.status("") if console.is_terminal else None
-        self._last = 0.0
-        self._unsaid = ""
-
-    def __enter__(self) -> ConsoleProgress:
-        if self._status is not None:
-            self._status.start()
-        return self
-
-    def __exit__(self, *_) -> None:
-        if self._status is not None:
-            self._status.stop()
-        if self._unsaid:
-            self._console.print(self._unsaid, highlight=False, soft_wrap=True)
-
-    def phase(self, name: str) -> None:
-        """Show the phase that begins."""
-        if self._status is not None:
-            self._status.update(PHASES.get(name, name))
-
-    def step(self, number: int, row, distance: float) -> None:
-        """Show an accepted step of a transient run."""
-        unit, scale = _unit("max_pressure_Pa", row.max_pressure)
-        self._say(
-            f"t = {row.time:.4g} s   step {number}   peak "
-            f"{scale * row.max_pressure:.4g} {unit}   distance from steady {distance:.2e}"
-        )
-
-    def load_step(self, number: int, row) -> None:
-        """Show an accepted increment of a fretting analysis."""
-        sticking = row.stick_area / row.contact_area if row.contact_area else 0.0
-        self._say(
-            f"t = {row.time:.4g} s   increment {number}   tangential force "
-            f"{row.tangential_force:.4g} N   stick area {sticking:.0%} of the contact"
-        )
-
-    def note(self, text: str) -> None:
-        """Print a note for the user."""
-        self._console.print(f"note: {text}", highlight=False, markup=False, soft_wrap=True)
-
-    def _say(self, text: str) -> None:
-        """Show the latest state on the live line, or print a line every few seconds."""
-        self._unsaid = text
-        if self._status is not None:
-            self._status.update(text)
-        elif time.monotonic() - self._last > _PLAIN_INTERVAL:
-            self._last = time.monotonic()
-            self._console.print(text, highlight=False, soft_wrap=True)
-            self._unsaid = ""
-
+from .readable import readable, readable_unit
 
 _PLAIN: dict[str, Any] = {"box": None, "padding": (0, 2, 0, 0)}
 _OF_PARTS = {
@@ -107,11 +33,6 @@ _OF_PARTS = {
     "probes": ("temperature_K",),
 }
 """Numbers of parts of a model that are printed."""
-_UNITS = {
-    "Pa": ((1e10, "GPa", 1e-9), (1e4, "MPa", 1e-6), (10.0, "kPa", 1e-3), (0.0, "Pa", 1.0)),
-    "m": ((1e-3, "mm", 1e3), (1e-8, "µm", 1e6), (0.0, "nm", 1e9)),
-}
-"""Units by SI unit: smallest size [SI], unit, and scale from the SI unit."""
 _FLAT = 1e-12  # range of the shape up to which a face is flat but for rounding errors [m]
 _SMALLEST_SHOWN = 1e-3
 """Smallest error estimate shown as a number [%]; errors of quadrature are far below."""
@@ -198,7 +119,7 @@ def _highlights(summary: dict):
 
     def row(key: str, digits: int = 6, label: str = "", unit: str = "", more: str = ""):
         if exists(key):
-            value, suited = _readable(key, summary[key], unit)
+            value, suited = readable(key, summary[key], unit)
             yield label or of_key(key).label, f"{value:.{digits}g} {suited}{more}"
 
     for where, balance, error in errors_of(summary):
@@ -207,7 +128,7 @@ def _highlights(summary: dict):
     yield from row("normal_force_N", unit="kN")
     if exists("min_pressure_Pa"):
         low, high = (summary[f"{m}_pressure_Pa"] for m in ("min", "max"))
-        unit, scale = _unit("max_pressure_Pa", high)
+        unit, scale = readable_unit("max_pressure_Pa", high)
         margin = _margin(summary, "pressure", "max_pressure")
         yield "pressure", f"{scale * low:.5g} … {scale * high:.5g} {unit}{margin}"
     yield from row("approach_m", 5, "approach of the holder towards body 2")
@@ -255,24 +176,6 @@ def _highlights(summary: dict):
         yield "pressure perturbations", _growing(summary)
     if exists("distance_from_steady"):
         yield "distance from the steady state", f"{summary['distance_from_steady']:.2e}"
-
-
-def _unit(key: str, size: float) -> tuple[str, float]:
-    """Readable unit for a number of a size [SI], and its scale from the SI unit."""
-    quantity = of_key(key)
-    for least, unit, scale in _UNITS.get(quantity.si, ()):
-        if abs(size) >= least and size:
-            return unit, scale
-    return quantity.unit, quantity.drawn(1.0)
-
-
-def _readable(key: str, value: float, unit: str = "") -> tuple[float, str]:
-    """Number in a given unit, or else in a readable one, with that unit."""
-    quantity = of_key(key).shown_in(unit) if unit else of_key(key)
-    if unit or quantity.si not in _UNITS:
-        return quantity.drawn(value), quantity.unit
-    suited, scale = _unit(key, value)
-    return scale * value + 0.0, suited
 
 
 def _margin(summary: dict, *quantities: str) -> str:

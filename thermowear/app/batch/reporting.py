@@ -11,8 +11,8 @@ from contextlib import contextmanager
 from typing import Any
 
 from ...errors import CaseError, ComputationError
-from ...output.console import Terminal
 from ...output.files import writing
+from ...output.progress import Terminal
 from ...output.variants.folder import VariantsFolder
 
 

@@ -14,7 +14,7 @@ from ...calibration.solution import Calibration, solve
 from ...case import AnyCase, as_plain
 from ...errors import CaseError
 from ...output.calibration import CalibrationFolder, draw_calibration, write_calibration_report
-from ...output.console import Terminal
+from ...output.progress import Terminal
 from ..batch.executors import Choice, Crew
 from .calibrate import problem_of, runner
 from .record import record_of, record_of_plan, rows_of

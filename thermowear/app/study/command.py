@@ -8,7 +8,7 @@ from typing import Any
 from ... import load
 from ...case import as_plain
 from ...errors import ComputationError
-from ...output.console import Terminal
+from ...output.progress import Terminal
 from ...output.study import (
     StudyFolder,
     draw_study,

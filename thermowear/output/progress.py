@@ -1,0 +1,83 @@
+"""Console output of a run while it proceeds."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+
+from rich.console import Console
+
+from ..results.summary_keys import PHASES
+from .readable import readable_unit
+
+_PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
+
+
+class Terminal(Console):
+    """Standard output; a closed pipe (``| head``) does not end a run."""
+
+    def on_broken_pipe(self) -> None:
+        self.quiet = True
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+class ConsoleProgress:
+    """Progress as one live line on a terminal, as plain lines otherwise.
+
+    Parameters
+    ----------
+    console : rich.console.Console
+    """
+
+    def __init__(self, console: Console):
+        self._console = console
+        self._status = console.status("") if console.is_terminal else None
+        self._last = 0.0
+        self._unsaid = ""
+
+    def __enter__(self) -> ConsoleProgress:
+        if self._status is not None:
+            self._status.start()
+        return self
+
+    def __exit__(self, *_) -> None:
+        if self._status is not None:
+            self._status.stop()
+        if self._unsaid:
+            self._console.print(self._unsaid, highlight=False, soft_wrap=True)
+
+    def phase(self, name: str) -> None:
+        """Show the phase that begins."""
+        if self._status is not None:
+            self._status.update(PHASES.get(name, name))
+
+    def step(self, number: int, row, distance: float) -> None:
+        """Show an accepted step of a transient run."""
+        unit, scale = readable_unit("max_pressure_Pa", row.max_pressure)
+        self._say(
+            f"t = {row.time:.4g} s   step {number}   peak "
+            f"{scale * row.max_pressure:.4g} {unit}   distance from steady {distance:.2e}"
+        )
+
+    def load_step(self, number: int, row) -> None:
+        """Show an accepted increment of a fretting analysis."""
+        sticking = row.stick_area / row.contact_area if row.contact_area else 0.0
+        self._say(
+            f"t = {row.time:.4g} s   increment {number}   tangential force "
+            f"{row.tangential_force:.4g} N   stick area {sticking:.0%} of the contact"
+        )
+
+    def note(self, text: str) -> None:
+        """Print a note for the user."""
+        self._console.print(f"note: {text}", highlight=False, markup=False, soft_wrap=True)
+
+    def _say(self, text: str) -> None:
+        """Show the latest state on the live line, or print a line every few seconds."""
+        self._unsaid = text
+        if self._status is not None:
+            self._status.update(text)
+        elif time.monotonic() - self._last > _PLAIN_INTERVAL:
+            self._last = time.monotonic()
+            self._console.print(text, highlight=False, soft_wrap=True)
+            self._unsaid = ""

@@ -256,18 +256,26 @@ def _kept_series():
 def new_series(alone: bool = False):
     """Series of all ranks, or of this process alone."""
     with DeferredSignals():
-        start_petsc()
+        start_petsc(alone)
         from mpi4py import MPI
 
         from ...simulation.analyses.series import Series
     return Series(MPI.COMM_SELF if alone else None)
 
 
-def start_petsc() -> None:
+def start_petsc(alone: bool = False) -> None:
     """Initialise PETSc with Python's signal handlers (Ctrl-C, ``| head``).
 
     Options in a ``.petscrc`` of the current folder are ignored, as one of them can write any file.
+
+    Parameters
+    ----------
+    alone : bool
+        True on a rank that computes by itself, while others may only wait for its results: all
+        ranks would have to initialise PETSc together.
     """
     import petsc4py
+    from mpi4py import MPI
 
-    petsc4py.init(["thermowear", "-no_signal_handler", "-skip_petscrc"])
+    comm = MPI.COMM_SELF if alone else MPI.COMM_WORLD
+    petsc4py.init(["thermowear", "-no_signal_handler", "-skip_petscrc"], comm=comm)

@@ -83,7 +83,7 @@ def variants(
 def grouped(cases: Iterable[AnyCase]) -> list[list[int]]:
     """Numbers of the cases that share set-up results; see `simulation.analyses.series.groups`."""
     with DeferredSignals():
-        start_petsc()
+        start_petsc(alone=True)
         from ...simulation.analyses.series import groups
         from ...simulation.from_case import model_of
 

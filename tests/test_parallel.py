@@ -84,7 +84,7 @@ def slow(*values):
             ["mesh.elements=20", "analysis.end_time=100 s", "analysis.output_times=['1 s']"],
         ),
         slow(DEMOS / "cylinder_stick_slip.toml", ["mesh.degree=2", "analysis.increments=4"]),
-        (
+        slow(
             DEMOS / "sphere_fretting.toml",
             ["mesh.elements=4", "analysis.increments=2", "wear.cycles=10"]
             + ["analysis.output_times=['0.0625 s']"],

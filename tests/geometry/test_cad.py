@@ -348,6 +348,7 @@ def assembly(folder, **keys):
     } | keys
 
 
+@pytest.mark.slow
 def test_pairs_of_bodies_that_touch(starter):
     """requirement: the contact of a slotted face with chamfers consists of both of its halves."""
     pairs = {"rubbing": ["lining", "disk"], "joint": ["plate", "lining"]}

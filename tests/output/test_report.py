@@ -409,7 +409,7 @@ def test_a_broken_picture_is_left_out(copy):
 
 def names_in(folder: Path, ending: str) -> set[str]:
     """Names of files with an ending in the sources of a folder."""
-    texts = (path.read_text(encoding="utf-8") for path in folder.glob("*.py"))
+    texts = (path.read_text(encoding="utf-8") for path in folder.rglob("*.py"))
     return {name for text in texts for name in re.findall(rf'"(\w+)\.{ending}"', text)}
 
 

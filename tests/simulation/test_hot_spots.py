@@ -162,6 +162,7 @@ def test_growth_over_speed(found):
     assert np.interp(0.0, rates, factors) == pytest.approx(critical, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_growth_of_the_layer():
     """requirement: growth rates of the closed form."""
     result = layer.layer(layer.THICKNESS, [41.2])

@@ -113,6 +113,7 @@ def test_static_speeds_of_the_section():
     np.testing.assert_allclose(solid[: len(flat)], flat, rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_hot_spots_across_the_sliding():
     """requirement: waves across the sliding, which the section lacks, come first on a wide block;
     the first mode of the section is among its modes, to 1e-9.

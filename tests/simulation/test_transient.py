@@ -171,7 +171,7 @@ def unworn(speed, *more):
     return tw.run(tw.load(HOT, ("mesh.degree=3", *changes)))
 
 
-@pytest.mark.parametrize("speed", [0.3, 0.6])
+@pytest.mark.parametrize("speed", [pytest.param(0.3, marks=pytest.mark.slow), 0.6])
 def test_contact_that_heat_makes_small(speed):
     """
     requirement: beyond the critical speed of the full face (0.14 rad/s) the ring stands on its

@@ -12,6 +12,7 @@ from thermowear.verification import CASES, SLOW, Check, compare
 from thermowear.verification.check import computed, starter
 
 LONG = SLOW | {
+    "hertz-sphere-3d",
     "annular-punch", "beam-shakedown", "block-on-ring", "braking-stop", "cad-part", "calibration",
     "case-2",
     "case-3", "case-4", "case-5", "case-6", "case-7", "case-8", "case-9", "clutch-pack",

@@ -20,6 +20,7 @@ from thermowear.output import tables
 from thermowear.output.files import BY_CONTACT, PICTURES
 from thermowear.output.pictures.curves import draw_interface
 from thermowear.output.report import is_report
+from thermowear.output.report.figures import key_figures
 from thermowear.output.report.shown_tables import shown_table
 from thermowear.results import TABLES
 
@@ -405,6 +406,23 @@ def test_a_broken_picture_is_left_out(copy):
     folder = copy(STEADY)
     (folder / "wear.png").write_bytes(b"")
     assert "img" not in {tag for tag, _ in report(folder).elements}
+
+
+def test_parts_of_a_model_have_groups_of_their_own():
+    """requirement: contacts, holders and bodies have lines; noise is that beside the whole model."""
+    summary = {
+        "friction_power_W": 356.8,
+        "contacts": {"rubbing": {"normal_force_N": 900.0, "friction_power_W": 356.8}},
+        "holders": {"piston": {"approach_m": 4.59e-5}},
+        "bodies": {"plate": {"contact_heat_W": 1e-14}},
+    }
+    found = key_figures(summary)
+    assert list(found) == ["Heat and energy", "Contact rubbing", "Holder piston", "Body plate"]
+    (force, _), (approach,), (heat,) = (found[name] for name in list(found)[1:])
+    assert (force.label, force.text) == ("normal force", "900 N")
+    assert force.source == "contacts.rubbing.normal_force_N = 900.0"
+    assert approach.text == "45.9 µm"
+    assert heat.text == "0 W"
 
 
 def names_in(folder: Path, ending: str) -> set[str]:

@@ -17,6 +17,8 @@ from ...results.quantity import multiple, split_key
 from ...results.summary_keys import GROUPS, OTHER, PHASES, group_of, of_key
 
 NOTHING = "–"
+_PARTS = {"contacts": "Contact", "holders": "Holder", "bodies": "Body", "probes": "Probe"}
+"""Tables of the summary by part of the model, and what a part is called."""
 NOISE = 1e-13
 """Size of rounding errors, relative to the largest number in the same unit."""
 _QUANTITY = re.compile(r"([-+]?[.\d]+(?:e[-+]?\d+)?) (\S+)")
@@ -44,10 +46,14 @@ class Figure:
 
 
 def key_figures(summary: dict[str, Any]) -> dict[str, list[Figure]]:
-    """Key figures of all keys of a summary by group; keys without a group are in "Other"."""
+    """Key figures of all keys of a summary by group; keys without a group are in "Other".
+
+    Each contact, holder, body and probe has a group of its own.
+    """
     sizes = _sizes(summary)
     keys = {name: [q.header for q in known] for name, known in GROUPS.items()}
-    keys[OTHER] = [key for key in summary if group_of(key) == OTHER and key != "title"]
+    known = {"title", *_PARTS}
+    keys[OTHER] = [key for key in summary if group_of(key) == OTHER and key not in known]
     groups = {}
     for name, own in keys.items():
         found = [
@@ -55,6 +61,14 @@ def key_figures(summary: dict[str, Any]) -> dict[str, list[Figure]]:
         ]
         if found:
             groups[name] = found
+    for kind, word in _PARTS.items():
+        for name, part in (summary.get(kind) or {}).items():
+            own_sizes = _sizes(summary | part)
+            groups[f"{word} {name}"] = [
+                figure
+                for key, value in part.items()
+                for figure in _figures(key, value, own_sizes, f"{kind}.{name}.")
+            ]
     return groups
 
 
@@ -122,17 +136,17 @@ def _memory(size: float) -> str:
     return f"{scale * size:.3g} {unit}"
 
 
-def _figures(key: str, value: Any, sizes: dict[str, float]) -> list[Figure]:
+def _figures(key: str, value: Any, sizes: dict[str, float], where: str = "") -> list[Figure]:
     """One line for a value, or one line per entry of a table."""
     label, si = of_key(key).label, of_key(key).si
     if not isinstance(value, dict) or not value:
         shown = without_noise(value, sizes[si]) if si else value
-        return [Figure(label, figure_text(key, shown), f"{key} = {value}")]
+        return [Figure(label, figure_text(key, shown), f"{where}{key} = {value}")]
     return [
         Figure(
             f"{label}: {PHASES.get(entry) or split_key(entry)[0]}",
             figure_text(key, inner, entry),
-            f"{key}.{entry} = {inner}",
+            f"{where}{key}.{entry} = {inner}",
         )
         for entry, inner in value.items()
     ]

@@ -20,7 +20,8 @@ PAGES = {
 }
 _FENCED = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 _INDENTED = re.compile(r"(?:^ {4,}\S.*\n)+", re.MULTILINE)
-_START = re.compile(r"^(?:\$ |thermowear |python3 |mpirun |mkdir |scripts/|make |pip |docker |sudo )")
+_COMMANDS = "thermowear |python3 |mpirun |mkdir |scripts/|make |pip |docker |sudo "
+_START = re.compile(rf"^(?:\$ |{_COMMANDS})")
 _PROGRAM = re.compile(r"^(?:scripts/env )?(?:python3 -m )?thermowear ")
 
 

@@ -409,7 +409,7 @@ def test_a_broken_picture_is_left_out(copy):
 
 
 def test_parts_of_a_model_have_groups_of_their_own():
-    """requirement: contacts, holders and bodies have lines; noise is that beside the whole model."""
+    """requirement: contacts, holders and bodies have lines; noise is relative to all of them."""
     summary = {
         "friction_power_W": 356.8,
         "contacts": {"rubbing": {"normal_force_N": 900.0, "friction_power_W": 356.8}},

@@ -122,7 +122,7 @@ class CondensedMethod:
 
         Heat shrinks a contact zone, which active sets from full contact, or from another speed, may
         miss; Lemke's method is not sure to end where the compliance is no positive operator. The
-        continuation may pass a critical speed and go on with a state that no perturbation leaves.
+        continuation may pass a critical speed: a state that perturbations would leave is refused.
         """
         guess, part, step = solved(compliance, opening, guess=None), 0.0, _FIRST_PART
         while part < 1.0:

@@ -39,7 +39,7 @@ def test_picture_of_the_coating(in_space, tmp_path, capsys):
     assert main(["run", str(tmp_path / "case.toml"), "-o", str(folder), "--no-pictures"]) == 0
     if not in_space:
         said = capsys.readouterr().out
-        assert "coating worn through, body 1" in " ".join(said.split())
+        assert "coating worn through, sphere" in " ".join(said.split())
     data = tables.read(folder / "interface.csv")
     assert coated_bodies(data) == ["coating_left_1"]
     assert "coating_left_2" not in data

@@ -290,7 +290,18 @@ def test_output_times_agree_with_the_history(copy):
         for name in ("max_pressure", "contact_area", "wear_volume_1"):
             expected = history.quantities[name].drawn(history[name][at])
             assert shown[history.quantities[name].axis] == pytest.approx(expected, rel=1e-5)
-    assert "worn volume, body 2 [mm³]" not in heads  # nothing but zeros
+    assert "worn volume, plate [mm³]" not in heads  # nothing but zeros
+
+
+def test_bodies_are_called_by_their_names(copy):
+    """requirement: report and tables of two bodies call them as their case does."""
+    folder = copy(RUNNING_IN)
+    heads, _ = report(folder).table("Output times")
+    assert "worn volume, punch [mm³]" in heads
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    assert "worn volume, plate" in page
+    assert "body 2" not in page.partition("case.resolved")[0]
+    assert tables.read(folder / "interface.csv").quantities["wear_2"].label == "wear depth, plate"
 
 
 def test_output_times_of_fretting_agree_with_the_loads(copy):

@@ -11,6 +11,7 @@ from rich.table import Table
 
 from ..balances import errors_of, holds
 from ..results.summary_keys import PHASES, of_key
+from .files import between
 from .readable import readable, readable_unit
 
 _PLAIN: dict[str, Any] = {"box": None, "padding": (0, 2, 0, 0)}
@@ -122,6 +123,7 @@ def _highlights(summary: dict):
             value, suited = readable(key, summary[key], unit)
             yield label or of_key(key).label, f"{value:.{digits}g} {suited}{more}"
 
+    first, second = between(summary)
     for where, balance, error in errors_of(summary):
         if not holds(error):
             yield f"NOT BALANCED: {balance.name}{where}", f"relative error {error:.1e}"
@@ -131,14 +133,14 @@ def _highlights(summary: dict):
         unit, scale = readable_unit("max_pressure_Pa", high)
         margin = _margin(summary, "pressure", "max_pressure")
         yield "pressure", f"{scale * low:.5g} … {scale * high:.5g} {unit}{margin}"
-    yield from row("approach_m", 5, "approach of the holder towards body 2")
+    yield from row("approach_m", 5, f"approach of the holder towards {second}")
     if summary.get("shape_range_m", 0.0) > _FLAT:
         yield from row("shape_range_m", 5, more=_margin(summary, "shape"))
     if exists("max_temperature_K"):
         yield from row("max_temperature_K", 5, more=_margin(summary, "temperature"))
         yield from row("friction_power_W")
     if exists("contact_heat_1_W") and summary["friction_power_W"] == 0.0:
-        yield from row("contact_heat_2_W", label="heat from body 1 to body 2")
+        yield from row("contact_heat_2_W", label=f"heat from {first} to {second}")
     yield from row("prescribed_heat_W", label="heat through surfaces")
     if exists("peak_temperature_K"):
         time = f" at {summary['peak_temperature_time_s']:.5g} s"
@@ -157,13 +159,13 @@ def _highlights(summary: dict):
         yield "cycles", f"{summary['cycles']:.6g}"
     if max(summary.get(f"wear_volume_{side}_m3", 0.0) for side in (1, 2)) > 0:
         volumes = (value for body in (1, 2) for _, value in row(f"wear_volume_{body}_m3", 5))
-        yield "worn volume, body 1 and 2", " and ".join(volumes)
-    for body in (1, 2):
+        yield f"worn volume, {first} and {second}", " and ".join(volumes)
+    for body, name in enumerate((first, second), start=1):
         distance = summary.get(f"worn_through_distance_{body}_m")
         yield from row(
             f"worn_through_time_{body}_s",
             5,
-            f"coating worn through, body {body}",
+            f"coating worn through, {name}",
             more="" if distance is None else f", {distance:.5g} m",
         )
     for which, label in (("", ""), ("_with_wear", " with wear")):

@@ -122,12 +122,19 @@ def contacts_of(folder: Path) -> list[str]:
 def bodies_of(folder: Path, contact: str = "") -> tuple[str, str]:
     """Names of the first and the second body of a contact, or of those of all contacts, for labels.
 
-    Those of a pair are "body 1" and "body 2".
+    Those of a run that has not ended are "body 1" and "body 2".
     """
-    contacts = read_summary(folder).get("contacts", {})
+    summary = read_summary(folder)
+    contacts = summary.get("contacts", {})
     if not contacts:
-        return "body 1", "body 2"
+        return between(summary)
     first, second = contacts.get(contact, {}).get("between", ("first bodies", "second bodies"))
+    return first, second
+
+
+def between(summary: dict[str, Any]) -> tuple[str, str]:
+    """Names of the first and the second body in the summary of a contact."""
+    first, second = summary.get("between", ("body 1", "body 2"))
     return first, second
 
 

@@ -21,6 +21,7 @@ from ...results.quantity import TABLES, from_key
 from ...results.summary_keys import of_key
 from ..files import (
     PICTURES,
+    between,
     contacts_of,
     is_report,
     name_at,
@@ -175,7 +176,8 @@ def _tables(folder: Path, summary: dict[str, Any]):
     times = output_times(folder, summary.get("time_s"))
     if times:
         caption = "Output times: extremes and totals over the contact"
-        yield shown_table(caption, times, AT_TIMES, "the tables of each time")
+        named = {header: q.of_bodies(between(summary)) for header, q in AT_TIMES.items()}
+        yield shown_table(caption, times, named, "the tables of each time")
     for table in sorted(TABLES.values(), key=lambda table: not table.grows):
         path = folder / f"{table.stem}.csv"
         if path.is_file():

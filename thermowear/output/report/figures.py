@@ -15,6 +15,7 @@ from typing import Any
 from ...balances import ALLOWED, BALANCES, errors_of, holds
 from ...results.quantity import multiple, split_key
 from ...results.summary_keys import GROUPS, OTHER, PHASES, group_of, of_key
+from ..files import between
 
 NOTHING = "–"
 _PARTS = {"contacts": "Contact", "holders": "Holder", "bodies": "Body", "probes": "Probe"}
@@ -54,20 +55,23 @@ def key_figures(summary: dict[str, Any]) -> dict[str, list[Figure]]:
     keys = {name: [q.header for q in known] for name, known in GROUPS.items()}
     known = {"title", *_PARTS}
     keys[OTHER] = [key for key in summary if group_of(key) == OTHER and key not in known]
-    groups = {}
+    groups, names = {}, between(summary)
     for name, own in keys.items():
         found = [
-            figure for key in own if key in summary for figure in _figures(key, summary[key], sizes)
+            figure
+            for key in own
+            if key in summary
+            for figure in _figures(key, summary[key], sizes, names)
         ]
         if found:
             groups[name] = found
     for kind, word in _PARTS.items():
         for name, part in (summary.get(kind) or {}).items():
-            own_sizes = _sizes(summary | part)
+            own_sizes, names = _sizes(summary | part), between(part)
             groups[f"{word} {name}"] = [
                 figure
                 for key, value in part.items()
-                for figure in _figures(key, value, own_sizes, f"{kind}.{name}.")
+                for figure in _figures(key, value, own_sizes, names, f"{kind}.{name}.")
             ]
     return groups
 
@@ -136,9 +140,11 @@ def _memory(size: float) -> str:
     return f"{scale * size:.3g} {unit}"
 
 
-def _figures(key: str, value: Any, sizes: dict[str, float], where: str = "") -> list[Figure]:
-    """One line for a value, or one line per entry of a table."""
-    label, si = of_key(key).label, of_key(key).si
+def _figures(
+    key: str, value: Any, sizes: dict[str, float], names: tuple[str, str], where: str = ""
+) -> list[Figure]:
+    """One line for a value, or one line per entry of a table; bodies by their names."""
+    label, si = of_key(key).of_bodies(names).label, of_key(key).si
     if not isinstance(value, dict) or not value:
         shown = without_noise(value, sizes[si]) if si else value
         return [Figure(label, figure_text(key, shown), f"{where}{key} = {value}")]

@@ -82,8 +82,7 @@ def summarise(end: Snapshot, time: float) -> dict:
         "friction_power_W": sum(found["friction_power_W"] for found in interfaces),
         "wear_dissipation_W": sum(found["wear_dissipation_W"] for found in interfaces),
         "contacts": {
-            one.name: {"between": [model.bodies[k].name for k in one.bodies], **found}
-            for one, found in zip(model.interfaces, interfaces, strict=True)
+            one.name: found for one, found in zip(model.interfaces, interfaces, strict=True)
         },
         "holders": dict(zip((h.name for h in model.holders), holders, strict=True)),
         "bodies": {
@@ -112,6 +111,7 @@ def _of_interface(end: Snapshot, index: int) -> dict:
     shape = fields.shape[own]
     constant, fluid = isinstance(interface.friction, Constant), fluid_forces(system)
     return {
+        "between": [system.model.bodies[k].name for k in interface.bodies],
         "friction": interface.nominal_friction if constant else None,
         "normal_force_N": float(system.force_per_pressure[own] @ p),
         **({"fluid_force_N": fluid[index]} if index in fluid else {}),

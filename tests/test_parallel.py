@@ -195,7 +195,7 @@ def test_a_failed_computation_ends_all_ranks(tmp_path):
         tmp_path / "out",
         "--no-pictures",
         "--set=mesh.degree=2",
-        '--set=motion.angular_velocity="50 rad/s"',
+        '--set=motion.angular_velocity="1000 rad/s"',
         "--set=analysis.type=initial",
     )
     assert done.returncode == 2

@@ -210,7 +210,7 @@ def gather_face(bodies: Bodies, surface: str, of_parts: PartValues = EQUAL) -> F
 
 
 def _gather_chain(body: BodyMesh, surface: str, of_parts: PartValues) -> Face:
-    table = gather_facets(body, surface, _facet_nodes(body.mesh)[1], of_parts)
+    table = gather_facets(body, surface, facet_nodes(body.mesh)[1], of_parts)
     order, flip = _chain(table.numbers[:, [0, -1]], table.nodes, surface)
     table, flip = FacetTable(*(column[order] for column in table)), flip[order]
     nodes = np.where(flip[:, None, None], table.nodes[:, ::-1], table.nodes)
@@ -260,7 +260,7 @@ def _disconnected_message(surface: str) -> str:
 
 def _gather_surface(body: BodyMesh, surface: str, of_parts: PartValues) -> Surface:
     """Curved facets in the order of their cells in the mesh file."""
-    kind, nodes_of_facet = _facet_nodes(body.mesh)
+    kind, nodes_of_facet = facet_nodes(body.mesh)
     table = gather_facets(body, surface, nodes_of_facet, of_parts)
     order = np.lexsort((table.local_facet, table.original_cell))
     table = FacetTable(*(column[order] for column in table))
@@ -282,7 +282,7 @@ def _gather_surface(body: BodyMesh, surface: str, of_parts: PartValues) -> Surfa
     )
 
 
-def _facet_nodes(mesh) -> tuple[str, np.ndarray]:
+def facet_nodes(mesh) -> tuple[str, np.ndarray]:
     """Kind of the facets of a cell, and their node indices, shape (n_facets, n_nodes)."""
     kind, order = reference_element(mesh, 1).cell_type, coordinate_element(mesh).degree
     corners, facets = np.asarray(basix.geometry(kind)), np.array(basix.topology(kind)[-2])

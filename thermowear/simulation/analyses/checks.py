@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from ...contact.faces.rim import on_edges, rim
+from ...contact.search.pairing import PairedFace
 from ...errors import CaseError, ComputationError
 from ...model.analyses import (
     Analysis,
@@ -15,6 +17,7 @@ from ...model.analyses import (
 )
 from ...results import InterfaceFields
 from ..geometry_update.outer_loop import GapWear
+from ..geometry_update.wider_zone import reaches_open_end
 from ..results.recording import Snapshot
 from ..system.rigid_modes import applied
 from ..system.system import System
@@ -109,6 +112,39 @@ def inclined_faces(system: System, pressure: np.ndarray) -> str | None:
         f"the contact reaches points where the unloaded faces are inclined by {angle:.0f} degrees "
         "to each other; strains are taken to be small, and from 60 degrees on faces are not paired"
     )
+
+
+def contact_at_an_end(system: System, pressure: np.ndarray) -> str | None:
+    """Note on contact that ends only because a face does; None if there is none.
+
+    Every rank calls. That is at an edge of one face where the surface of its body goes on, unless
+    the other body ends there.
+    """
+    if reaches_open_end(system, pressure):
+        return (
+            "the contact reaches the end of the contact face, which was meshed for a smaller one; "
+            "use contact.positioning = true, or a wider geometry.zone"
+        )
+    for pairing, points in system.contacts:
+        ends = [_ends(system, side, pressure[points] > 0) for side in pairing.sides]
+        for side, own, other in zip(pairing.sides, ends, ends[::-1], strict=True):
+            if np.any(own[1] & ~other[0]):
+                return (
+                    f"the contact reaches the end of the contact face {side.face.name}, though the "
+                    "surface of the body goes on; extend the face, or contact beyond it is left out"
+                )
+    return None
+
+
+def _ends(system: System, side: PairedFace, pressing: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Masks of the pressing points at sharp edges of a face, and at those where it could go on."""
+    model, face, facet = system.model, side.face, side.facet[pressing]
+    at = on_edges(face, side.t[pressing])
+    if not at.any():
+        return at.any(axis=1), at.any(axis=1)
+    paired = [name for one in (*model.interfaces, *model.ties) for name in one.faces]
+    sharp, goes_on = rim(face, system.bodies.each[face.body], paired)
+    return np.any(at & sharp[facet], axis=1), np.any(at & goes_on[facet], axis=1)
 
 
 def too_hot(summary: Mapping[str, Any]) -> str | None:

@@ -25,12 +25,12 @@ from ...timer import Phases
 from ..accuracy.error_estimate import estimate_errors
 from ..cycles.fretting import FrettingHistory
 from ..cycles.reciprocating import ReciprocatingHistory
-from ..geometry_update.wider_zone import reaches_open_end
 from ..results.recording import Snapshot, sample
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
 from ..system.system import System
 from .checks import (
+    contact_at_an_end,
     deep_wear,
     inclined_faces,
     moved_against_load,
@@ -143,12 +143,8 @@ def analyse(
         history = _STEPPED[type(analysis)](system, analysis, observer)
         last = history.resume(before)
         end, result = history.conclude(history.follow(history.states(last)))
-    if reaches_open_end(end.system, end.contact.pressure):
-        observer.note(
-            "the contact reaches the end of the contact face, which was meshed for a smaller one; "
-            "use contact.positioning = true, or a wider geometry.zone"
-        )
     found: list[ComputationError | str | None] = [
+        contact_at_an_end(end.system, end.contact.pressure),
         inclined_faces(end.system, end.contact.pressure),
         deep_wear(system, analysis, end.interface),
         too_hot(result.summary),

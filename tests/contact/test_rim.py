@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.contact.faces.rim import edges_of, on_edges
+from thermowear.contact.faces.rim import edges_of, near_chosen, on_edges
 
 from ..test_parallel import same_on_two_ranks
 from .rim_on_ranks import BORDER, found
@@ -54,6 +54,18 @@ def test_points_on_edges(cell_type):
         at = on_edges(face, t[0][None])
         assert at.tolist() == [[k == number for k in range(len(edges_of(face.kind)))]]
     assert not on_edges(face, np.array([[0.3, 0.3]])).any()
+
+
+def test_facets_that_share_only_a_corner_with_the_rim():
+    """requirement: a point at the end of an edge counts, whichever facet it belongs to."""
+    face, sharp, _ = found("tetrahedron", 1, 0.0)
+    ends = np.unique(face.corner_numbers[:, edges_of(face.kind)][sharp])
+    inside = ~sharp.any(axis=1)
+    shared = inside[:, None] & np.isin(face.corner_numbers, ends)
+    facet, corner = np.nonzero(np.repeat(inside[:, None], 3, axis=1))
+    t = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]])[corner]
+    assert shared.any()
+    np.testing.assert_array_equal(near_chosen(face, sharp, facet, t), shared[facet, corner])
 
 
 def test_two_ranks(tmp_path):

@@ -26,6 +26,8 @@ _SAME = 1e-9
 """Largest distance of the middles of one edge in two facets, relative to the size of the face."""
 _ON_EDGE = 1e-3
 """Largest distance of a point on an edge of its facet, in parameters."""
+_NEAR_EDGE = 1e-2
+"""Such a distance of points in slivers beside curved edges of the other face."""
 
 
 def edges_of(kind: str) -> np.ndarray:
@@ -33,7 +35,7 @@ def edges_of(kind: str) -> np.ndarray:
     return np.array(basix.topology(basix.CellType[kind])[-2])
 
 
-def on_edges(face: FacetSet, t: np.ndarray) -> np.ndarray:
+def on_edges(face: FacetSet, t: np.ndarray, within: float = _ON_EDGE) -> np.ndarray:
     """True where points lie on an edge of their facets, shape (n, n_edges).
 
     Parameters
@@ -41,15 +43,35 @@ def on_edges(face: FacetSet, t: np.ndarray) -> np.ndarray:
     face : FacetSet
     t : ndarray, shape (n,) or (n, 2)
         Parameters of the points.
+    within : float
+        Largest distance, in parameters.
     """
     corners = lattice(1, face.kind).reshape(-1, face.dim)
     first, *others = np.moveaxis(corners[edges_of(face.kind)], 1, 0)
     away = t.reshape(len(t), 1, face.dim) - first
     if not others:
-        return np.abs(away[..., 0]) < _ON_EDGE
+        return np.abs(away[..., 0]) < within
     along = others[0] - first
     across_edge = along[:, 0] * away[..., 1] - along[:, 1] * away[..., 0]
-    return np.abs(across_edge) < _ON_EDGE * np.linalg.norm(along, axis=1)
+    return np.abs(across_edge) < within * np.linalg.norm(along, axis=1)
+
+
+def near_chosen(face: FacetSet, chosen: np.ndarray, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """True where points lie on chosen edges of a face or at their ends, nearly, shape (n,).
+
+    Parameters
+    ----------
+    face : FacetSet
+    chosen : ndarray of bool, shape (n_facets, n_edges)
+    facet, t : ndarray
+        Points. At an end of an edge their facet may be one that shares only this corner with it.
+    """
+    numbers = face.corner_numbers
+    ends = np.isin(numbers, numbers[:, edges_of(face.kind)][chosen])
+    corners = lattice(1, face.kind).reshape(-1, face.dim)
+    away = np.abs(t.reshape(len(t), 1, face.dim) - corners).max(axis=2)
+    at_ends = np.any((away < _NEAR_EDGE) & ends[facet], axis=1)
+    return at_ends | np.any(on_edges(face, t, _NEAR_EDGE) & chosen[facet], axis=1)
 
 
 def rim(face: FacetSet, body: BodyMesh, paired: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...contact.faces.rim import on_edges, rim
+from ...contact.faces.rim import near_chosen, on_edges, rim
 from ...contact.search.pairing import PairedFace
 from ...errors import CaseError, ComputationError
 from ...model.analyses import (
@@ -137,14 +137,15 @@ def contact_at_an_end(system: System, pressure: np.ndarray) -> str | None:
 
 
 def _ends(system: System, side: PairedFace, pressing: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Masks of the pressing points at sharp edges of a face, and at those where it could go on."""
+    """Masks of the pressing points near sharp edges of a face, and on those where it goes on."""
     model, face, facet = system.model, side.face, side.facet[pressing]
-    at = on_edges(face, side.t[pressing])
+    t = side.t[pressing]
+    at = on_edges(face, t)
     if not at.any():
         return at.any(axis=1), at.any(axis=1)
     paired = [name for one in (*model.interfaces, *model.ties) for name in one.faces]
     sharp, goes_on = rim(face, system.bodies.each[face.body], paired)
-    return np.any(at & sharp[facet], axis=1), np.any(at & goes_on[facet], axis=1)
+    return near_chosen(face, sharp, facet, t), np.any(at & goes_on[facet], axis=1)
 
 
 def too_hot(summary: Mapping[str, Any]) -> str | None:

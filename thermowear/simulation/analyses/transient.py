@@ -26,6 +26,7 @@ from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
+from ..time.alternation import ALTERNATES, Alternation
 from ..time.time_loop import AnySize, FewSizes, Moment, times_to_hit
 from .static import wear_velocity
 
@@ -77,7 +78,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         problem = interface_problem(system, observer.note)
         sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
         self.loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
-        self._speed, self._is_pair = 0.0, system.model.is_pair
+        self._speed, self._is_pair, self._area = 0.0, system.model.is_pair, Alternation()
         self._coated = layers(system.model).keys()
         self._lost: dict[Face, tuple[float, float]] = {}
         self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
@@ -109,6 +110,8 @@ class TransientHistory(AnalysisHistory[Moment]):
         each += self._probe_rows(state)
         if problem.heat is None or not problem.stores_heat:
             return [row, *each]
+        if self._area.begins(row.contact_area):
+            self._observer.note(ALTERNATES)
         heat = self._heat_row(state, conditions, problem.heat)
         if not heat.balance_error <= ALLOWED:
             require(heat_balance_relative_error=heat.balance_error)

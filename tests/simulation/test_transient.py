@@ -186,6 +186,22 @@ def test_contact_that_heat_makes_small(speed):
     assert found.summary["approach_m"] == pytest.approx(expected.summary["approach_m"], rel=5e-3)
 
 
+def test_contact_that_heat_makes_small_is_similar():
+    """requirement: a ring of twice the size with half the conductances and a quarter of the speed
+    has the same pressures and temperatures; the lengths are doubled.
+    """
+    sizes = {"inner_radius": 40, "outer_radius": 240, "punch_height": 100}
+    sizes |= {"plate_radius": 280, "plate_height": 200}
+    doubled = [f'geometry.{key}="{size} mm"' for key, size in sizes.items()]
+    doubled.append('heat.conductance="5e5 W/(m^2 K)"')
+    doubled += [f'heat.cooling.{at}="1000 W/(m^2 K)"' for at in ("punch_top", "plate_bottom")]
+    one, two = unworn(0.6).summary, unworn(0.15, *doubled).summary
+    assert one["contact_area_m2"] < 0.1 * FORCE / 50e6
+    ratios = {"contact_area_m2": 4.0, "max_pressure_Pa": 1.0, "max_temperature_K": 1.0}
+    for key, ratio in (ratios | {"approach_m": 2.0, "friction_power_W": 2.0}).items():
+        assert two[key] == pytest.approx(ratio * one[key], rel=1e-7)
+
+
 def test_far_beyond_the_critical_speed_the_run_says_so():
     """requirement: a contact zone below the size of an element is an error or a large estimate."""
     assert unworn(5.0).summary["max_pressure_error_estimate_relative"] > 0.1

@@ -138,14 +138,15 @@ def contact_at_an_end(system: System, pressure: np.ndarray) -> str | None:
 
 def _ends(system: System, side: PairedFace, pressing: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Masks of the pressing points near sharp edges of a face, and on those where it goes on."""
-    model, face, facet = system.model, side.face, side.facet[pressing]
-    t = side.t[pressing]
-    at = on_edges(face, t)
-    if not at.any():
-        return at.any(axis=1), at.any(axis=1)
-    paired = [name for one in (*model.interfaces, *model.ties) for name in one.faces]
-    sharp, goes_on = rim(face, system.bodies.each[face.body], paired)
-    return near_chosen(face, sharp, facet, t), np.any(at & goes_on[facet], axis=1)
+    model, face = system.model, side.face
+    facet, t = side.facet[pressing], side.t[pressing]
+    on_edge = on_edges(face, t)
+    if not on_edge.any():
+        nowhere = np.zeros(len(t), dtype=bool)
+        return nowhere, nowhere
+    faces = [one.faces for one in model.interfaces] + [tie.faces for tie in model.ties]
+    sharp, goes_on = rim(face, system.bodies.each[face.body], [name for f in faces for name in f])
+    return near_chosen(face, sharp, facet, t), np.any(on_edge & goes_on[facet], axis=1)
 
 
 def too_hot(summary: Mapping[str, Any]) -> str | None:

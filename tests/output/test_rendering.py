@@ -19,7 +19,7 @@ ENDS = 30.0  # s; patience of these tests on a busy machine
 FAKE = """
 import json, os, signal, sys
 for line in sys.stdin:
-    kind, arguments = json.loads(line)
+    kind, arguments, _ = json.loads(line)
     if kind == "crash":
         print("something about graphics", file=sys.stderr, flush=True)
         os.kill(os.getpid(), signal.SIGSEGV)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from ..files import contacts_of, name_at, picture
@@ -38,14 +38,43 @@ _OTHERS: dict[str, Callable[..., None]] = {
     "hot_spots": draw_hot_spots,
 }
 
+_Picture = tuple[str, Callable[..., None], tuple[str, ...]]
+"""Name, function that draws it, and contact, if it is one of a contact."""
 
-def draw_tables(folder: Path, in_space: bool) -> list[str]:
-    """Draw curves and maps from the tables; returns missing pictures with reasons."""
+
+def draw_tables(folder: Path, in_space: bool, contacts: int) -> list[str]:
+    """Draw curves and maps of the first contacts, and of the whole, from the tables.
+
+    Returns
+    -------
+    list of str
+        Missing pictures with reasons.
+    """
+    notes = _drawn(folder, _of_contacts(contacts_of(folder)[:contacts], in_space))
+    return notes + _drawn(folder, [(name, draw, ()) for name, draw in _OTHERS.items()])
+
+
+def draw_other_contacts(folder: Path, in_space: bool, contacts: int) -> None:
+    """Draw curves and maps of all contacts but the first ones.
+
+    Raises
+    ------
+    MissingColumnError
+        At the end, with the reasons of missing pictures.
+    """
+    notes = _drawn(folder, _of_contacts(contacts_of(folder)[contacts:], in_space))
+    if notes:
+        raise MissingColumnError("; ".join(notes))
+
+
+def _of_contacts(contacts: list[str], in_space: bool) -> list[_Picture]:
+    drawn = _OVER_A_SURFACE if in_space else _ALONG_A_LINE
+    return [(name, draw, (contact,)) for contact in contacts for name, draw in drawn.items()]
+
+
+def _drawn(folder: Path, pictures: Iterable[_Picture]) -> list[str]:
     notes = []
-    first = _OVER_A_SURFACE if in_space else _ALONG_A_LINE
-    contacts = contacts_of(folder)
-    each = [(name, draw, (contact,)) for contact in contacts for name, draw in first.items()]
-    for name, draw, contact in [*each, *((name, draw, ()) for name, draw in _OTHERS.items())]:
+    for name, draw, contact in pictures:
         try:
             if name in _OF_THE_INTERFACE or (folder / name_at(name, None, *contact)).is_file():
                 draw(folder, *contact)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
+from itertools import compress
 from pathlib import Path
 
 import numpy as np
@@ -19,10 +20,12 @@ from ..rendering import PictureJob, Renderer, attempt
 from .kinds import FPS, has_frames, is_surface
 
 _ANIMATION_TIMEOUT = 1800.0  # [s]
+_MANY = 4  # contacts from which half of their curves are drawn by another process
 
 
 def make_pictures(folder: Path, renderer: Renderer | None = None) -> list[str]:
-    """Draw all pictures: in this process, but bodies in space in another one at the same time.
+    """Draw all pictures: in this process, but bodies in space in another one at the same time,
+    as half of the curves of many contacts.
 
     Rendering uses graphics libraries that may crash a process; the curves are drawn and the caller
     continues in any case.
@@ -47,17 +50,22 @@ def make_pictures(folder: Path, renderer: Renderer | None = None) -> list[str]:
     needed = name_at("interface", None, contacts_of(folder)[0])
     if not (folder / needed).is_file():
         raise CaseError(f"{folder}: contains no {needed}; not a results folder of a finished run")
-    in_space = is_surface(folder)
+    in_space, contacts = is_surface(folder), len(contacts_of(folder))
     jobs = _of_the_bodies(folder, in_space)
+    if contacts >= _MANY and not in_space:
+        contacts = (contacts + 1) // 2
+        arguments = str(folder.resolve()), in_space, contacts
+        jobs["other contacts"] = PictureJob("contacts", arguments, in_space=False, apart=True)
     with _drawing(list(jobs.values()), renderer) as reasons:
         from .from_tables import draw_tables  # loads matplotlib while bodies are rendered
 
-        notes = draw_tables(folder, in_space)
+        notes = draw_tables(folder, in_space, contacts)
     notes += [f"{folder}: not balanced: {line}" for line in violated(read_summary(folder))]
-    if not (folder / "fields.vtu").is_file():
-        return [*notes, f"{folder}: no fields.vtu, so no pictures of the bodies"]
     failed = [(what, why) for what, why in zip(jobs, reasons, strict=True) if why]
-    return notes + [f"{what} could not be drawn: {why}" for what, why in failed]
+    notes += [f"{what} could not be drawn: {why}" for what, why in failed]
+    if not (folder / "fields.vtu").is_file():
+        notes.append(f"{folder}: no fields.vtu, so no pictures of the bodies")
+    return notes
 
 
 def _of_the_bodies(folder: Path, in_space: bool) -> dict[str, PictureJob]:
@@ -86,11 +94,13 @@ def _drawing(jobs: list[PictureJob], renderer: Renderer | None = None) -> Iterat
     """
     reasons: list[str] = []
     with nullcontext(renderer) if renderer else Renderer() as there:
-        there.begin([job for job in jobs if job.in_space])
+        apart = [job.in_space or job.apart for job in jobs]
+        there.begin(list(compress(jobs, apart)))
         yield reasons
-        here = iter([attempt(job.kind, job.arguments) for job in jobs if not job.in_space])
+        ours = compress(jobs, (not away for away in apart))
+        here = iter([attempt(job.kind, job.arguments) for job in ours])
         rendered = iter(there.reasons())
-        reasons += [next(rendered if job.in_space else here) for job in jobs]
+        reasons += [next(rendered if away else here) for away in apart]
 
 
 def make_animation(folder: Path, path: Path, fps: float = FPS) -> None:

@@ -31,17 +31,23 @@ def save(figure: Figure, path: Path, crop: bool = False) -> None:
 def _fix_ticks(figure: Figure) -> None:
     """Keep the ticks of a first layout, as other ones would need a different width in the second.
 
-    The two may alternate for ever, and labels would be cut off. Rendered bodies have no axes.
+    The two may alternate for ever, and labels would be cut off. A layout that does not change the
+    ticks is the last one. Rendered bodies have no axes.
     """
     if not any(axes.axison and not hasattr(axes, "_colorbar") for axes in figure.axes):
         return
     layout = figure.get_layout_engine()
     assert layout is not None
+    every = [axis for axes in figure.axes for axis in (axes.xaxis, axes.yaxis)]
+    before = [list(axis.get_majorticklocs()) for axis in every]
     layout.execute(figure)
-    for axes in figure.axes:
-        for axis in (axes.xaxis, axes.yaxis):
-            if axis.get_scale() == "linear":
-                axis.set_major_locator(FixedLocator(list(axis.get_majorticklocs())))
+    after = [list(axis.get_majorticklocs()) for axis in every]
+    if after == before:
+        figure.set_layout_engine("none")
+        return
+    for axis, places in zip(every, after, strict=True):
+        if axis.get_scale() == "linear":
+            axis.set_major_locator(FixedLocator(places))
 
 
 def cropped(picture: np.ndarray) -> np.ndarray:

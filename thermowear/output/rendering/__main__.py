@@ -8,26 +8,33 @@ import select
 import signal
 import sys
 from contextlib import ExitStack, suppress
+from functools import cache
 
 from .display import display
 from .jobs import WARM_UP, attempt
 
 
 def serve() -> None:
-    """Draw until there are no more jobs; where VTK cannot draw, each job hears why."""
+    """Draw until there are no more jobs; if VTK cannot draw, each job that needs it hears why."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "w", encoding="utf-8")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # libraries may print
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # which ends the X server, too
-    reason = ""
     with ExitStack() as opened:
-        try:
-            opened.enter_context(display())
-        except OSError as error:
-            reason = str(error)
-        if not reason and not select.select([sys.stdin], [], [], 0.0)[0]:
+
+        @cache
+        def hindrance() -> str:
+            try:
+                opened.enter_context(display())
+            except OSError as error:
+                return str(error)
+            return ""
+
+        if not select.select([sys.stdin], [], [], 0.0)[0] and not hindrance():
             attempt(*WARM_UP)
         for line in sys.stdin:
-            print(json.dumps(reason or attempt(*json.loads(line))), file=answers, flush=True)
+            kind, arguments, in_space = json.loads(line)
+            answer = (hindrance() if in_space else "") or attempt(kind, arguments)
+            print(json.dumps(answer), file=answers, flush=True)
 
 
 if __name__ == "__main__":

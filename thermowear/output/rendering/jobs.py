@@ -15,6 +15,7 @@ _DRAWN_BY = {
     "hot spots": ("in_space.hot_spot_views", "draw_views"),
     "animation": ("animation", "draw_animation"),
     "mesh": ("in_space.mesh", "draw_mesh"),
+    "contacts": ("from_tables", "draw_other_contacts"),
 }
 """Module of the pictures, imported only where it draws, and function of each kind."""
 
@@ -31,12 +32,15 @@ class PictureJob(NamedTuple):
         True for pictures that need VTK.
     timeout : float
         Time after which drawing is given up [s].
+    apart : bool
+        True for pictures drawn in another process though they need no VTK.
     """
 
     kind: str
     arguments: tuple[str | float, ...]
     in_space: bool = True
     timeout: float = 180.0
+    apart: bool = False
 
 
 def attempt(kind: str, arguments: tuple[str | float, ...]) -> str:

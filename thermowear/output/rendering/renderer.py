@@ -85,7 +85,9 @@ class Renderer:
         if self._process is not None and self._process.stdin is not None:
             with suppress(BrokenPipeError):  # found again when the answer is read
                 for job in self._jobs:
-                    self._process.stdin.write(json.dumps((job.kind, job.arguments)) + "\n")
+                    self._process.stdin.write(
+                        json.dumps((job.kind, job.arguments, job.in_space)) + "\n"
+                    )
                 self._process.stdin.flush()
 
     def _answer(self, job: PictureJob) -> str:

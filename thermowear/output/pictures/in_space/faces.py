@@ -16,6 +16,7 @@ from ...tables import TableColumns
 from ..maps import triangulated
 from ..panels import Limits, color_limits, color_map
 from ..saving import cropped
+from .merging import merged
 from .solids import (
     GREY,
     SHADING,
@@ -65,7 +66,7 @@ def draw_faces(path: Path, grid, interface: TableColumns, seen: Seen) -> None:
     """
     face = contact_face(interface)
     body = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == seen.number))
-    surface = body.clean(tolerance=1e-6 * body.length).extract_surface()
+    surface = merged(body).extract_surface()
     focus = focus_on(interface, surface, _WIDE)
     outwards, bearer = _outwards(face, surface), solid_of([surface])
     views = [_pressure(face, bearer, focus, interface, outwards, seen.title)]

@@ -16,6 +16,7 @@ from ....results import FIELDS
 from ...tables import TableColumns
 from ..panels import SMALL_CONTACT, Limits, color_limits, color_map
 from ..saving import cropped
+from .merging import merged
 from .views import View, draw_views
 
 PIXELS = (1600, 1257)
@@ -31,7 +32,6 @@ SHADING: dict[str, Any] = {
     "smooth_shading": True,
 }
 GREY = "lightgray"  # of bodies without a field
-_MERGED = 1e-6  # of the bodies' size
 _DEPTH_OFFSET = 1e-3
 _ROUNDED = 0.05
 """Largest step of the positions of cuts, relative to the contact face."""
@@ -150,9 +150,8 @@ def clipped(grid, y: float) -> list:
     bodies = np.unique(grid.cell_data["body"])[::-1]
     for number, body in enumerate(bodies):
         solid = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == body))
-        # merge coinciding samples of neighbouring cells, so that interior faces are no surface
-        merged = solid.clean(tolerance=_MERGED * size)
-        surface = merged.clip(normal=(0.0, -1.0, 0.0), origin=(0.0, y, 0.0)).extract_surface()
+        whole = merged(solid)
+        surface = whole.clip(normal=(0.0, -1.0, 0.0), origin=(0.0, y, 0.0)).extract_surface()
         if surface.n_points:  # not wholly in front of the plane
             surface.points[:, 1] += number * _DEPTH_OFFSET * size
             surfaces.append(surface)

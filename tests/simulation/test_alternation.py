@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from thermowear.app.cli import main
+from thermowear.simulation.time import alternation
 from thermowear.simulation.time.alternation import Alternation
 
 
@@ -33,3 +35,16 @@ def test_two_contact_sets(period):
 def test_changes(areas):
     """requirement: neither shrinking contact nor periodic loading is told."""
     assert not seen(areas)
+
+
+@pytest.mark.parametrize("turns", [0, 10**6])
+def test_a_run_tells_of_it(turns, monkeypatch, tmp_path, capsys):
+    """requirement: a running-in with stored heat tells once that its contact area alternates."""
+    monkeypatch.setattr(alternation, "_TURNS", turns)
+    command = ["run", "disk-brake-stop.toml", "-o", "r", "--no-pictures"]
+    small = ("mesh.degree=2", 'analysis.end_time="0.1 s"', "analysis.output_times=[]")
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "disk-brake-stop"]) == 0
+    assert main([*command, *(f"--set={change}" for change in small)]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert said.count(" ".join(alternation.ALTERNATES.split())[:60]) == (turns == 0)

@@ -37,10 +37,11 @@ def test_whole_faces(tmp_path, capsys):
     assert END not in ran(tmp_path, capsys, lambda name, x: False)
 
 
+@pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("body", ["PLATE", "PUNCH"])
-def test_face_that_ends_under_the_other(body, tmp_path, capsys):
-    """requirement: the face whose surface goes on is named, of either body."""
-    said = ran(tmp_path, capsys, lambda name, x: name == f"{body}_FACE" and x > 10e-3)
+def test_face_that_ends_under_the_other(body, side, tmp_path, capsys):
+    """requirement: the face whose surface goes on is named, of either body, at either end."""
+    said = ran(tmp_path, capsys, lambda name, x: name == f"{body}_FACE" and side * x > 10e-3)
     assert f"{END} {body}_FACE" in said
 
 

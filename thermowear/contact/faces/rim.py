@@ -87,7 +87,7 @@ def rim(face: FacetSet, body: BodyMesh, paired: Sequence[str]) -> tuple[np.ndarr
 
     Returns
     -------
-    sharp, open : ndarray of bool, shape (n_facets, n_edges)
+    sharp, goes_on : ndarray of bool, shape (n_facets, n_edges)
     """
     edges = edges_of(face.kind)
     keys = np.sort(face.corner_numbers[:, edges].reshape(-1, edges.shape[1]), axis=1)

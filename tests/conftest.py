@@ -8,11 +8,11 @@ import signal
 import sys
 from pathlib import Path
 
+os.environ.setdefault("OMP_NUM_THREADS", "1")  # before numpy: runs here and in processes agree
+
 import numpy as np
 import pytest
 from hypothesis import settings
-
-os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import thermowear as tw
 from thermowear.app.cli import main

@@ -47,6 +47,10 @@ class ComputationError(Exception):
     exit_code = 2
 
 
+class StandstillError(ComputationError):
+    """Time integration that comes to a standstill before its end."""
+
+
 class UnwritableError(ComputationError):
     """Results cannot be written any more, as a disk is full or not available."""
 

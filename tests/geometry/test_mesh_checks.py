@@ -24,7 +24,7 @@ def case(path, mesh: Plain, load=None, **keys):
     return tw.load(
         {
             "model": "plane-strain",
-            "geometry": {"type": "file", "path": str(path)} | NAMES | keys,
+            "geometry": {"type": "file", "path": str(path), "thickness": "1 mm"} | NAMES | keys,
             "bodies": {"punch": STEEL, "plate": STEEL},
             "load": load or {"force": "1 kN"},
             "analysis": {"type": "initial"},
@@ -364,8 +364,8 @@ def test_bodies_of_a_wrong_unit(tmp_path):
     metres = {"length_unit": "100 m", "load": {"force": "1 kN"}}
     found = notes(tmp_path, blocks(), **metres)
     assert found == [
-        "geometry.length_unit: 'punch' is 4 m large; wrong length_unit?",
-        "geometry.length_unit: 'plate' is 6 m large; wrong length_unit?",
+        "geometry.length_unit: 'punch' is 4 m large; wrong unit of length?",
+        "geometry.length_unit: 'plate' is 6 m large; wrong unit of length?",
     ]
     light = {"thickness": "1 m", "load": {"force": "20 mN"}}
     assert notes(tmp_path, blocks(), **light) == [

@@ -125,6 +125,24 @@ def test_what_is_supported(ring):
 
 
 @pytest.mark.parametrize(
+    "laws",
+    [
+        {"friction": lambda T: 0.3 - 1e-3 * (T - 293.15)},
+        {"friction": "0.3 - T/(1000 K)"},
+        {"wear": lambda p, v, T: 1e-14 * p * v * T / 293.15},
+    ],
+)
+def test_laws_of_temperature_need_heat(ring, laws):
+    """requirement: no law is evaluated at a temperature that nothing computes."""
+    model, face, _ = ring
+    punch = model.bodies[0]
+    given = {key: {punch: law} if key == "wear" else law for key, law in laws.items()}
+    (kind,) = laws
+    with pytest.raises(tw.CaseError, match=rf"^Interface: {kind} depends on T; .* heat=Heat"):
+        replace(model, interfaces=[replace(face, **given)], heat=None)
+
+
+@pytest.mark.parametrize(
     ("holder", "message"),
     [
         ({"free": ["q"]}, r"^Holder\.free: found 'q'; must be some of: x, y, z"),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.errors import CaseNote
 
 from ..case.starter import FRETTING, RECIPROCATING, STEADY
 from .from_case import python_model, same
@@ -99,6 +100,15 @@ def test_other_supports_of_the_same_mesh():
     anew = replace(after, _shared={}).steady().result.interface.shape
     np.testing.assert_allclose(found, anew, rtol=0.0, atol=1e-12 * np.ptp(anew))
     assert np.ptp(found) > 1.1 * np.ptp(before)
+
+
+def test_a_mesh_in_millimetres():
+    """requirement: bodies of tens of metres are noted."""
+    model, _, _ = python_model(STEADY, "mesh.degree=1", "mesh.elements=3")
+    for mesh in {id(body.mesh): body.mesh for body in model.bodies}.values():
+        mesh.geometry.x[:] *= 1e3
+    with pytest.warns(CaseNote, match=r"^Body\.mesh: 'punch' is 100 m large; wrong unit"):
+        replace(model, _shared={})
 
 
 def test_only_the_relative_motion_matters():

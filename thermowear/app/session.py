@@ -27,7 +27,8 @@ from ..parallel import on_root
 from ..results import Frame, HistoryRow, InterfaceFields, LoadRow
 from ..serialise import Checkpoint, pack
 from ..simulation import Observer, run
-from ..simulation.from_case import with_accurate_mesh
+from ..simulation.analyses import run as analyses
+from ..simulation.from_case import analysis_of, model_of, with_accurate_mesh
 from ..simulation.runtime.observer import AnyRow, Saved
 from ..timer import Phases
 
@@ -139,7 +140,8 @@ def run_session(chosen, comm, import_seconds: float) -> int:
                 case = meshed
                 on_root(comm, lambda: _writing(lambda: folder.describe(as_plain(case))))
                 recorder = Recorder(comm, folder, shown, case)
-            result = run(case, comm, recorder, phases, saved)
+            model, analysis = model_of(case), analysis_of(case)
+            result = analyses.run(model, analysis, comm, recorder, phases, saved)
             if chosen.accuracy and result.stopped is None:
                 with phases("coarser and finer"):
                     others = side_by_side(chosen.case, tuple(chosen.overrides), comm)

@@ -164,6 +164,14 @@ class Interface:
         )
 
     @property
+    def of_temperature(self) -> list[str]:
+        """Kinds of its laws that depend on temperature: friction, wear."""
+        laws = [own for wear in self.wear.values() for own in wear.each]
+        wear = [v for own in laws for v in (own.law.variables, own.factors.variables)]
+        found = {"friction": [self.friction_law.variables], "wear": wear}
+        return [kind for kind, each in found.items() if any("T" in names for names in each)]
+
+    @property
     def coated(self) -> bool:
         """True if a face has layers."""
         return any(wear.has_layers for wear in self.wear.values())

@@ -36,6 +36,7 @@ from .face_pair import FacePair
 from .face_tie import FaceTie
 from .holding import Rotation, SurfaceHolder, Translation
 from .march import MarchState, march
+from .model_checks import check
 from .solution import ModelSolution
 from .user_mesh import UserMeshes, user_meshes
 
@@ -244,7 +245,7 @@ class ScriptedModel:
             title=self.title,
             ties=tuple(tie.in_model(self.bodies) for tie in self.ties),
         )
-        _check_surfaces(model, meshes.tagged.surfaces)
+        check(model, meshes.tagged.surfaces)
         return model
 
     def _interface(self, pair: FacePair, analysis: Analysis) -> Interface:
@@ -269,28 +270,6 @@ class ScriptedModel:
         groups = glued_bodies(len(self.bodies), [tie.in_model(self.bodies) for tie in self.ties])
         found = replace(found, bodies=with_glued(found.bodies, groups))
         return replace(found, name="") if self._is_pair else found
-
-
-def _check_surfaces(model: Model, known: Sequence[str]) -> None:
-    """Reject surfaces whose facets do not bound their body."""
-    heat = model.heat or Heat()
-    supports = [n for b in model.bodies for n in (*b.fixed, *b.rollers, *b.mid_plane)]
-    loads = [n for h in model.holders for n in (*h.surface_forces, *h.surface_pressures)]
-    faces = [
-        *(n for i in model.interfaces for n in i.faces),
-        *(n for t in model.ties for n in t.faces),
-    ]
-    glued = {index for tie in model.ties for index in tie.bodies}
-    thermal = *heat.cooling, *heat.temperature, *heat.flux, *heat.power
-    for name in (*faces, *supports, *loads, *thermal, *model.symmetry):
-        if name not in known:
-            body, _, tag = name.rpartition(":")
-            raise CaseError(f"Model: facets with the tag {tag} do not bound the body {body!r}")
-    for index, held in enumerate(model.bodies):
-        if held.mid_plane and model.kinematics != "3d":
-            raise CaseError(f"Body {held.name!r}: mid_plane requires a mesh in space")
-        if not (held.fixed or held.rollers or held.mid_plane or index in glued):
-            raise CaseError(f"Body {held.name!r}: is neither on a holder nor fixed")
 
 
 def _transient(until: Any, settings: Mapping[str, Any]) -> TransientAnalysis:

@@ -11,7 +11,7 @@ from ..bulk.field import basis_element, lagrange_space
 from ..bulk.spaces import Spaces
 from ..compat import coordinate_element, geometry_dofmap
 from ..errors import CaseError
-from ..geometry.checks.mesh_checks import oriented
+from ..geometry.checks.mesh_checks import note_size, oriented
 from ..geometry.mesh.mixed import AnyMesh, joined
 from ..geometry.mesh.nodes import CORNERS, FACETS, boundary, reference_nodes
 from ..geometry.mesh.tagged import TaggedMesh, compact
@@ -147,6 +147,7 @@ def user_meshes(bodies: tuple[MeshBody, ...]) -> UserMeshes:
         checked = [_oriented(_in_model(piece)) for piece in pieces if piece is not None]
         pairs = zip(checked, bodies, strict=True)
         tagged = joined([_tagged(piece, body) for (piece, _), body in pairs])
+        note_size(tagged, "Body.mesh")
         return tagged.checksum(), tagged, tuple(turned for _, turned in checked)
 
     checksum, tagged, reversed_cells = on_root(bodies[0].mesh.comm, gathered)

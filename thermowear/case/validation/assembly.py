@@ -16,6 +16,7 @@ from . import cyclic_assembly, materials
 from .analyses import varying
 from .assembly_histories import histories
 from .conditions import heat_in_time, heated_surfaces
+from .defaults import note_assembly_defaults
 from .layer_wear import layer_wear
 from .mesh_sizes import mesh_sizes
 from .part_wear import note_default_per, part_wear
@@ -37,6 +38,7 @@ def check(case: AssemblyCase) -> None:
             "which twists the whole ring, is left out (its heat and wear are not)"
         )
     _note_default_per(case)
+    note_assembly_defaults(case)
 
 
 def _note_default_per(case: AssemblyCase) -> None:

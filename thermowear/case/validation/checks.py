@@ -13,6 +13,7 @@ from ..tables.schema import Case
 from ..values.section import Fault
 from . import analyses, conditions, materials
 from .cyclic_assembly import NO_DIRECTION
+from .defaults import note_defaults
 from .layer_wear import layer_wear
 from .mesh_sizes import mesh_sizes
 from .part_wear import note_default_per, part_wear
@@ -43,6 +44,7 @@ def check(case: Case) -> None:
         )
     for name, law in case.wear.laws.items():
         note_default_per(name, law, friction)
+    note_defaults(case)
 
 
 def _names(case: Case) -> Iterator[Fault]:
@@ -65,7 +67,8 @@ def _names(case: Case) -> Iterator[Fault]:
             text = f"unknown name in this geometry; must be one of: {', '.join(known)}"
             if known == surfaces and case.geometry.not_listed(name):
                 text = (
-                    f"in the file, but not listed: add it to geometry.surfaces: {name} = {name!r}"
+                    "in the file, but not listed: add it to geometry.surfaces: "
+                    f"{name} = {name!r}; listed are: {', '.join(known)}"
                 )
             yield f"{table}.{name}", text
     for name in bodies:
@@ -136,6 +139,8 @@ def _spread(case: Case) -> Iterator[Fault]:
             why = f"only {moving} passes under the other body; leave it out"
         elif not geometry.passes and geometry.sector == 1.0:
             why = f"the whole face of {moving} is always in contact; leave it out"
+            if conditions.may_pass(case):
+                why = conditions.why_not_passing(case)
         elif case.analysis.cyclic:
             why = f"not supported in a {type_} analysis: body 2 does not pass by"
         elif type_ == "steady" and len(case.wear) == 1 and geometry.sector == 1.0:

@@ -201,7 +201,7 @@ def heat(case: Case) -> Iterator[Fault]:
     leaves = heat.advection == "resolved" and case.geometry.rotation_center is None
     yield from heated_surfaces(heat, case.geometry.contact, leaves)
     if heat.advection != "none" and not case.geometry.passes:
-        yield "heat.advection", _not_advected(case)
+        yield "heat.advection", why_not_passing(case)
     elif heat.advection != "none" and case.motion is None:
         yield "heat.advection", "needs [motion]: without it body 2 does not pass by"
     elif heat.advection == "resolved" and case.motion is not None and case.motion.history:
@@ -260,8 +260,17 @@ def heated_surfaces(heat: HeatTable, faces: Collection[str], leaves: bool) -> It
                 yield f"heat.{table}.{name}", text
 
 
-def _not_advected(case: Case) -> str:
-    moving = case.geometry.bodies[1]
-    if case.geometry.sector != 1.0:
+def may_pass(case: Case) -> bool:
+    """True if body 2 of a mesh file passes under body 1 once the file's case says how."""
+    return case.geometry.from_file and case.model != "axisymmetric"
+
+
+def why_not_passing(case: Case) -> str:
+    """Why body 2 does not pass under body 1, and what makes it so."""
+    geometry, moving = case.geometry, case.geometry.bodies[1]
+    if geometry.sector != 1.0:
         return f"heat is already distributed around the {moving}, which is modelled by its section"
-    return f"{moving} does not pass under the other body, as a strip, a disk or a drum does"
+    if not may_pass(case):
+        return f"{moving} does not pass under the other body, as a strip, a disk or a drum does"
+    key = "rotation_center (its axis)" if case.model == "3d" else "track (its length)"
+    return f"{moving} passes under the other body only with geometry.{key}"

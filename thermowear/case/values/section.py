@@ -50,6 +50,10 @@ class Section(BaseModel):
             return data
         return {key: _quantities(key, value) for key, value in data.items()}
 
+    def leaves_out(self, key: str) -> bool:
+        """True if the table can have a key and does not give it."""
+        return key in type(self).model_fields and key not in self.model_fields_set
+
 
 def _quantities(key: str, value: Any) -> Any:
     """List of quantities from numbers and a common unit; other values unchanged."""

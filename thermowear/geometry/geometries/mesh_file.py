@@ -34,6 +34,7 @@ _KEYS = {
     "roller_names": "rollers",
     "mid_plane_names": "mid_plane",
     "rotates_about": "rotation_center",
+    "track_length": "track",
     "contact_area_given": "contact_area",
     "surface_names": "surfaces",
 }
@@ -86,6 +87,9 @@ class MeshFile(HalvableGeometry):
     rotates_about : tuple of float or None
         Key ``rotation_center``: x and y of the axis along z that body 2 rotates about in space; by
         default the bodies slide along x [m].
+    track_length : float or None
+        Key ``track``: length of the track on body 2 that passes under body 1, as of a strip, in a
+        plane model; by default body 2 stays under it [m].
     surface_names : dict of str to str
         Key ``surfaces``: names in the file of further surfaces, or of those above, by their names
         in the case.
@@ -112,6 +116,7 @@ class MeshFile(HalvableGeometry):
     rotates_about: tuple[Coordinate, Coordinate] | None = Field(
         alias="rotation_center", default=None
     )
+    track_length: Length | None = Field(alias="track", default=None)
     surface_names: dict[str, str] = Field(alias="surfaces", default={})
     contact_area_given: Area | None = Field(alias="contact_area", default=None)
     _with_material: dict[str, dict[str, str]] = PrivateAttr(default={})
@@ -120,7 +125,8 @@ class MeshFile(HalvableGeometry):
 
     @model_validator(mode="after")
     def _complete(self, info: ValidationInfo):
-        self._in_space = (info.context or {}).get(MODEL) == "3d"
+        model = (info.context or {}).get(MODEL) or ""
+        self._in_space = model == "3d"
         if len(self.bodies) != 2:
             raise KeyFault(
                 "bodies", f"needs two bodies, the held one first; found {len(self.bodies)}"
@@ -131,6 +137,8 @@ class MeshFile(HalvableGeometry):
             raise KeyFault("paths", f"needs a file for each of: {', '.join(self.bodies)}")
         if not self.paths and self.path is None:
             raise KeyFault("path", "missing")
+        if self.track is not None and not (model.startswith("plane") and not self.half):
+            raise KeyFault("track", "requires a plane model, not half of it")
         if self._in_space:
             self._check_space()
         else:
@@ -166,7 +174,7 @@ class MeshFile(HalvableGeometry):
 
     @model_serializer(mode="wrap")
     def _by_keys(self, handler) -> dict[str, Any]:
-        left_out = {"half", "thickness"} if self._in_space else set(_IN_SPACE)
+        left_out = {"half", "thickness", "track"} if self._in_space else set(_IN_SPACE)
         left_out |= set() if self.paths else {"paths"}
         found = {_KEYS.get(name, name): value for name, value in handler(self).items()}
         return {name: value for name, value in found.items() if name not in left_out}
@@ -179,6 +187,7 @@ class MeshFile(HalvableGeometry):
     rollers: ClassVar[Any] = keyed(attrgetter("roller_names"))
     mid_plane: ClassVar[Any] = keyed(attrgetter("mid_plane_names"))
     rotation_center: ClassVar[Any] = keyed(attrgetter("rotates_about"))
+    track: ClassVar[Any] = keyed(attrgetter("track_length"))
 
     @keyed
     def press_direction(self) -> tuple[float, ...]:

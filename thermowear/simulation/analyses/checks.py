@@ -10,6 +10,7 @@ import numpy as np
 from ...contact.faces.rim import near_chosen, on_edges, rim
 from ...contact.search.pairing import PairedFace
 from ...errors import CaseError, ComputationError
+from ...geometry.checks.mesh_checks import length
 from ...model.analyses import (
     Analysis,
     FrettingAnalysis,
@@ -30,6 +31,14 @@ _STEEP = -0.75
 """Largest cosine between the outward normals where faces press; up to -0.5 they are paired."""
 _MOLTEN = 3273.15
 """Temperature at which hardly any material is solid [K]."""
+_SMALL = 0.02
+"""Wear up to which the geometry of the unworn bodies is that of the worn ones, see `GapWear`."""
+_CHANGED = 0.1
+"""Largest change of pressure and temperatures by a geometry update that is not noted."""
+_OF_BODIES = (
+    "of the thickness behind the face or of its radius of curvature, or tilts elements by ten "
+    "times that"
+)
 _NO_CLOSURE = 1e-9
 """Relative closure of the gap, below which a motion counts as one that no contact resists."""
 
@@ -191,14 +200,17 @@ def open_contact(system: System, interface: InterfaceFields) -> ComputationError
 def deep_wear(system: System, analysis: Analysis, interface: InterfaceFields) -> str | None:
     """Note on an analysis without mesh motion that leaves the small-wear regime; every rank calls.
 
-    Meshes are not moved in fretting and reciprocating analyses. In reciprocating sliding the depths
-    are those at mid-stroke of body 1.
+    Meshes are not moved in steady, fretting and reciprocating analyses. In reciprocating sliding
+    the depths are those at mid-stroke of body 1; in a steady state they are at least those that
+    close the gaps of the unworn faces.
 
     Returns
     -------
     str or None
         None if the wear is small, or declared small by ``wear.update = "never"``.
     """
+    if analysis.type == "steady":
+        return _deep_steady(system, interface)
     if not isinstance(analysis, FrettingAnalysis | ReciprocatingAnalysis):
         return None
     allowed = analysis.largest_kept
@@ -207,6 +219,34 @@ def deep_wear(system: System, analysis: Analysis, interface: InterfaceFields) ->
         return None
     return (
         f"the wear, which a {analysis.type} analysis keeps in the gap, comes to {fraction:.2%} "
-        "of the thickness behind the face or of its radius of curvature, or tilts elements by ten "
-        f"times that: pressures and shapes are those of small wear, up to {allowed:.2%}"
+        f"{_OF_BODIES}: pressures and shapes are those of small wear, up to {allowed:.2%}"
+    )
+
+
+def changed_by_updates(summary: Mapping[str, Any]) -> str | None:
+    """Note on geometry updates that change the pressure much; None if there were none."""
+    change = summary.get("geometry_change", 0.0)
+    if change <= _CHANGED:
+        return None
+    return (
+        f"wear.update: pressure or temperatures changed by up to {100 * change:.2g} % as meshes "
+        "were moved to the worn faces, whose shape the elements do not follow; wear evens that "
+        "out, but the states behind it are less accurate: use finer elements where faces bend"
+    )
+
+
+def _deep_steady(system: System, interface: InterfaceFields) -> str | None:
+    """Note on unworn faces so far apart that wear that closes their gaps is not small."""
+    depth, unworn = np.zeros((2, len(interface.pressure))), system.contacts.gap
+    for own in system.contacts.ranges:
+        gap = np.where(interface.pressure[own] > 0.0, unworn[own], -np.inf)
+        depth[:, own] = np.maximum(gap.max() - unworn[own], 0.0) if np.isfinite(gap.max()) else 0.0
+    depth[[side for side in (0, 1) if side not in system.laws]] = 0.0
+    fraction = GapWear(system).fraction(depth)
+    if fraction <= _SMALL:
+        return None
+    return (
+        f"the steady state touches where the unworn faces are up to {length(depth.max())} apart: "
+        f"wear of this depth comes to {fraction:.2%} {_OF_BODIES}; temperatures, deflection and "
+        "worn shape are those of the unworn bodies. A transient analysis moves the meshes"
     )

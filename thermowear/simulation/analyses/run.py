@@ -30,6 +30,7 @@ from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
 from ..system.system import System
 from .checks import (
+    changed_by_updates,
     contact_at_an_end,
     deep_wear,
     inclined_faces,
@@ -147,6 +148,7 @@ def analyse(
         contact_at_an_end(end.system, end.contact.pressure),
         inclined_faces(end.system, end.contact.pressure),
         deep_wear(system, analysis, end.interface),
+        changed_by_updates(result.summary),
         too_hot(result.summary),
     ]
     if result.stopped is None:
@@ -200,9 +202,11 @@ def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Obse
     if result.stopped is not None:
         return result
     if end.system.choice.iterative:
-        why = "where bodies are solved by multigrid"
-        observer.note(f"the discretisation error is not estimated {why}")
-        missing = {"error_estimate_missing": {"all": f"not estimated {why}"}}
+        why = (
+            'not estimated where bodies are solved by multigrid (it is with mesh.solver = "direct")'
+        )
+        observer.note(f"the discretisation error is {why}")
+        missing = {"error_estimate_missing": {"all": why}}
         return replace(result, summary=result.summary | missing)
     try:
         estimates = estimate_errors(analysis, end)

@@ -26,16 +26,12 @@ from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from ..time.alternation import ALTERNATES, Alternation
+from ..time.alternation import ALTERNATES, STEPS, alternates
 from ..time.time_loop import AnySize, FewSizes, Moment, times_to_hit
+from .runaway import cause_of
 from .static import wear_velocity
 
 _MELTED = 5000.0  # K, above the melting point of any solid
-_STEEPER = 3.0  # heating rate over mean rate so far; linear rise of load and speed gives 2.5
-_UNSTABLE = (
-    "thermal runaway: friction heat distorts the bodies, which concentrates pressure and heat "
-    "(thermoelastic instability); reduce the speed or the friction"
-)
 
 
 def _principle(settings: TransientAnalysis, system: System) -> SteadyState | None:
@@ -78,7 +74,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         problem = interface_problem(system, observer.note)
         sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
         self.loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
-        self._speed, self._is_pair, self._area = 0.0, system.model.is_pair, Alternation()
+        self._speed, self._is_pair, self._alternates = 0.0, system.model.is_pair, False
         self._coated = layers(system.model).keys()
         self._lost: dict[Face, tuple[float, float]] = {}
         self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
@@ -110,8 +106,11 @@ class TransientHistory(AnalysisHistory[Moment]):
         each += self._probe_rows(state)
         if problem.heat is None or not problem.stores_heat:
             return [row, *each]
-        if self._area.begins(row.contact_area):
-            self._observer.note(ALTERNATES)
+        rows = self.table(HistoryRow)
+        if len(rows) % STEPS == STEPS - 1 and not self._alternates:
+            self._alternates = alternates([each.contact_area for each in (*rows, row)])
+            if self._alternates:  # told once
+                self._observer.note(ALTERNATES)
         heat = self._heat_row(state, conditions, problem.heat)
         if not heat.balance_error <= ALLOWED:
             require(heat_balance_relative_error=heat.balance_error)
@@ -123,7 +122,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         Raises
         ------
         ComputationError
-            If they are hotter; that of a step failing in thermal runaway is extended by the cause.
+            If they are hotter; that of a standstill is extended by its cause.
         """
         try:
             for moment in self.loop.moments(last):
@@ -135,9 +134,12 @@ class TransientHistory(AnalysisHistory[Moment]):
                         "of any solid"
                     )
         except ComputationError as reason:
-            if self._runs_away():
-                raise ComputationError(f"{reason}; {_UNSTABLE}") from None
-            raise
+            problem, rows = self.loop.now.problem, self.table(HistoryRow)
+            steady_heat = problem.heat is not None and not problem.stores_heat
+            cause = cause_of(reason, rows if self.table(HeatRow) else [], steady_heat)
+            if cause is None:
+                raise
+            raise ComputationError(f"{reason}; {cause}") from None
 
     def snapshot(self, state: Moment) -> Snapshot:
         return snapshot_at(self.loop.now.problem, state.state, state.time)
@@ -177,16 +179,6 @@ class TransientHistory(AnalysisHistory[Moment]):
                 }
             )
         return found.get("", {}) if model.is_pair else {"contacts": found}
-
-    def _runs_away(self) -> bool:
-        """True if the faces heat up much faster than before (thermal runaway)."""
-        rows = self.table(HistoryRow)
-        if not self.table(HeatRow) or len(rows) < 3:
-            return False
-        first, before, last = rows[0], rows[-2], rows[-1]
-        so_far = (before.max_temperature - first.max_temperature) / before.time
-        now = (last.max_temperature - before.max_temperature) / last.step
-        return now > _STEEPER * so_far > 0.0
 
     def _row(self, moment: Moment, slid: float, conditions: InterfaceConditions) -> HistoryRow:
         system, pressure, rows = self.loop.now.system, moment.state.pressure, self.table(HistoryRow)

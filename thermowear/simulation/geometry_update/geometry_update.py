@@ -230,15 +230,10 @@ def _missing_shape(system: System, before: WornGeometry, state: InterfaceState) 
 
 
 def _kept_points(system: System, state: InterfaceState, renewed: Renewed) -> list[Rule] | None:
-    """Contact points to keep on the facets of the first bodies; None in a section.
-
-    Pointwise contact keeps them in a section, too: beside the edge of the wear no interpolation of
-    the gap is accurate enough for contact at other points.
-    """
-    pointwise = state.pointwise is not None and not renewed
-    if system.contacts.in_space or pointwise:
-        return [pairing.pieces for pairing in system.contacts.each]
-    return None
+    """Contact points to keep on the facets of the first bodies; None in a remeshed section."""
+    if renewed and not system.contacts.in_space:
+        return None
+    return [pairing.pieces for pairing in system.contacts.each]
 
 
 def _followed(

@@ -34,6 +34,11 @@ from ..points.worn_geometry import WornContact, WornGeometry, along
 from ..results.recording import snapshot_at
 from ..system.system import System
 
+KEPT = (
+    "wear.update: at {:.4g} s the meshes would have to follow the wear, but {}; all wear remains "
+    "in the gap (small wear)"
+)
+"""Note on a time and on what keeps the meshes from following."""
 STEPPED = (
     "wear: both faces wear in place, and materials side by side share it in different ratios; no "
     "mesh follows the step between them, so that all wear remains in the gap (small wear)"

@@ -26,7 +26,7 @@ from ..system.setup_cache import SetupCache
 from ..system.system import System
 from ..time.time_loop import Moment, StepSizes, is_over, moments
 from .geometry_update import settled, updated
-from .moving_faces import STEPPED, MovingFaces, smoothed_wear, steps_grow
+from .moving_faces import KEPT, STEPPED, MovingFaces, smoothed_wear, steps_grow
 from .thickness import thicknesses
 from .wider_zone import UpdateCounts, meshed_wider, wider_zone
 
@@ -38,10 +38,6 @@ _ROOM = 5.0
 """Upper limit of the allowed fraction, as a multiple of the automatic one."""
 _TILT = 0.1
 """Weight of the element tilt: depth difference of its ends relative to its size."""
-_KEPT = (
-    "wear.update: at {:.4g} s the meshes would have to follow the wear, but {}; all wear remains "
-    "in the gap (small wear)"
-)
 Principle = Callable[[System], SteadyState | None]
 """Steady state that a system approaches; None if there is none."""
 
@@ -275,18 +271,23 @@ class OuterLoop:
             self._sizes.largest = step * left / grown
 
     def _end(self, now: MeshPeriod, before: Moment, last: Moment) -> tuple[MeshPeriod, Moment]:
-        """Period and moment after a final update, so that the run ends with worn meshes."""
-        former, (now, after) = now.problem, self._update(now, last)
+        """Period and moment after a final update, so that the run ends with worn meshes.
+
+        One that takes the pressure away from the steady state is left out: wear stays in the gap.
+        """
+        former, (moved, after) = now.problem, self._update(now, last)
         states, tolerance = (before.state, last.state, after.state), self._settings.tolerance
-        state = settled(former, now.problem, *states, before.time, after.step, tolerance)
-        return now, replace(after, state=state)
+        state = settled(former, moved.problem, *states, before.time, after.step, tolerance)
+        distance = moved.problem.distance(state, moved.steady)
+        after = replace(after, state=state, distance=distance)
+        return (moved, after) if is_over(self._settings, after) else (now, last)
 
     def _update(self, now: MeshPeriod, last: Moment) -> tuple[MeshPeriod, Moment]:
         """Period and moment after moving the meshes; adapts the allowed fraction."""
         kept = now.gap_wear
         assert kept is not None
         if kept.faces.obstacle is not None:
-            self._keep_all(_KEPT.format(last.time, kept.faces.obstacle))
+            self._keep_all(KEPT.format(last.time, kept.faces.obstacle))
             return self._period(now.problem), last
         worn = smoothed_wear(now.problem, last.state, last.time)
         state = replace(last.state, worn=worn)

@@ -7,10 +7,11 @@ touch while apart, and too cold while they touch: neither is a solution (Barber,
 
 from __future__ import annotations
 
-from collections import deque
+from collections.abc import Sequence
 from itertools import pairwise
 
-_STEPS = 100
+STEPS = 100
+"""Number of steps after which alternation is looked for again."""
 _TURNS = 30
 """Number of turns among the last steps from which a quantity alternates; others turn rarely."""
 
@@ -21,17 +22,8 @@ ALTERNATES = (
 )
 
 
-class Alternation:
-    """Last values of a quantity, to tell once that it alternates."""
-
-    def __init__(self) -> None:
-        self._values: deque[float] = deque(maxlen=_STEPS)
-        self._told = False
-
-    def begins(self, value: float) -> bool:
-        """Add a value; True when it is first seen that the quantity alternates."""
-        self._values.append(value)
-        changes = [after > before for before, after in pairwise(self._values) if after != before]
-        found = not self._told and sum(a != b for a, b in pairwise(changes)) >= _TURNS
-        self._told |= found
-        return found
+def alternates(values: Sequence[float]) -> bool:
+    """True if a quantity alternates in its last `STEPS` values."""
+    last = values[-STEPS:]
+    changes = [after > before for before, after in pairwise(last) if after != before]
+    return sum(a != b for a, b in pairwise(changes)) >= _TURNS

@@ -13,7 +13,7 @@ from functools import partial, reduce
 
 import numpy as np
 
-from ...errors import ComputationError
+from ...errors import ComputationError, StandstillError
 from ...model.analyses import TimedAnalysis
 from ..interface.sdirk import (
     InterfaceState,
@@ -170,7 +170,8 @@ def moments(
     Raises
     ------
     ComputationError
-        If the step becomes too small or the number of steps too large. Yielded states stay valid.
+        If the number of steps becomes too large; a `StandstillError` if the step becomes too small.
+        Yielded states stay valid.
     """
     sizes = sizes or AnySize()
     if last is None:
@@ -194,7 +195,7 @@ def moments(
         yield last
         still = still + 1 if last.error <= _ROUNDING else 0
         if still == _STILL and targets == [math.inf]:
-            raise ComputationError(
+            raise StandstillError(
                 f"{settings.type}: nothing changes any more at {last.time:.4g} s, at a distance of "
                 f"{last.distance:.2g} from the steady state (analysis.steady_tolerance = "
                 f"{settings.steady_tolerance:g}); use a finer mesh, or a larger tolerance"
@@ -292,6 +293,6 @@ class _Steps:
             tried.append((step, error))
             located = rounding * trial.reached if trial.reached < 0.9 * step else 0.0
             step = size(min(max(proposed, located), 0.9 * step))
-        raise ComputationError(
+        raise StandstillError(
             f"{self.settings.type}: no step is small enough at {last.time:g} s{trouble}"
         )

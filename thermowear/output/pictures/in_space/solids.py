@@ -33,6 +33,12 @@ SHADING: dict[str, Any] = {
 }
 GREY = "lightgray"  # of bodies without a field
 _DEPTH_OFFSET = 1e-3
+_BEHIND = 1e-5
+"""Distance of the cut from its plane, relative to the body.
+
+Edges of cells that end in the plane, but for rounding, would be cut into coinciding points, and the
+normals of triangles without area are arbitrary.
+"""
 _ROUNDED = 0.05
 """Largest step of the positions of cuts, relative to the contact face."""
 
@@ -151,7 +157,8 @@ def clipped(grid, y: float) -> list:
     for number, body in enumerate(bodies):
         solid = grid.extract_cells(np.flatnonzero(grid.cell_data["body"] == body))
         whole = merged(solid)
-        surface = whole.clip(normal=(0.0, -1.0, 0.0), origin=(0.0, y, 0.0)).extract_surface()
+        origin = (0.0, y + _BEHIND * whole.length, 0.0)
+        surface = whole.clip(normal=(0.0, -1.0, 0.0), origin=origin).extract_surface()
         if surface.n_points:  # not wholly in front of the plane
             surface.points[:, 1] += number * _DEPTH_OFFSET * size
             surfaces.append(surface)

@@ -1,0 +1,41 @@
+"""Running-in that steady temperatures end: the message names the cause."""
+
+import tomli_w
+
+import thermowear as tw
+
+from ..case.starter import STEADY, tables
+from ..geometry.plain import NAMES, blocks, msh
+
+
+def result(folder, velocity, **analysis):
+    """Result of a hot punch on a plate, with steady temperatures."""
+    (folder / "blocks.msh").write_text(msh(blocks((8, 12), (4, 4))), encoding="utf-8")
+    case = tables(STEADY)
+    case["heat"] = {
+        "ambient": "20 degC",
+        "conductance": "2e4 W/(m^2 K)",
+        "advection": "none",
+        "cooling": {"PUNCH_TOP": "500 W/(m^2 K)", "PLATE_BOTTOM": "500 W/(m^2 K)"},
+    }
+    case |= {
+        "model": "plane-strain",
+        "geometry": {"type": "file", "path": "blocks.msh", "thickness": "25 mm"} | NAMES,
+        "mesh": {"degree": 2},
+        "load": {"force": "2 kN"},
+        "motion": {"velocity": f"{velocity} m/s"},
+        "analysis": analysis,
+    }
+    (folder / "case.toml").write_text(tomli_w.dumps(case), encoding="utf-8")
+    return tw.run(tw.load(folder / "case.toml"))
+
+
+def test_beyond_the_critical_speed(tmp_path):
+    """requirement: a running-in that steady temperatures stop is told by its cause."""
+    critical = result(tmp_path, 0.01, type="stability").summary["critical_speed_m_per_s"]
+    running_in = {"type": "transient", "until": "steady"}
+    assert result(tmp_path, 0.5 * critical, **running_in).stopped is None
+    for times in (2.0, 5.0):
+        reason = str(result(tmp_path, times * critical, **running_in).stopped)
+        assert "states may jump beyond the critical speed" in reason
+        assert "heat.transient = true" in reason

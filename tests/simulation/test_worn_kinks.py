@@ -15,12 +15,16 @@ WEAR = {"coefficient": "1e-8 1/MPa", "per": "pressure"}
 SOFTER = WEAR | {"coefficient": "2e-8 1/MPa"}
 
 
-def chamfered(folder, depth, **analysis):
-    """Case of a punch (|x| < 20 mm) with chamfers of 5 mm by a depth [m], on a plate that wears."""
+def chamfered(folder, depth, tilt=0.0, **analysis):
+    """Case of a punch (|x| < 20 mm) with chamfers of 5 mm by a depth [m], on a plate that wears.
+
+    Its face may be drawn tilted by a slope.
+    """
     mesh = copy.deepcopy(blocks((16, 23), (4, 4)))
     for node in {node for name, nodes in mesh.lines if name == "PUNCH_FACE" for node in nodes}:
         x, y = mesh.points[node]
-        mesh.points[node] = [x, y + depth * max(abs(x) - 15e-3, 0.0) / 5e-3]
+        rise = depth * max(abs(x) - 15e-3, 0.0) / 5e-3
+        mesh.points[node] = [x, y + rise + tilt * (x + 20e-3)]
     path = folder / "blocks.msh"
     path.write_text(msh(mesh), encoding="utf-8")
     case = tables(STEADY)
@@ -68,3 +72,11 @@ def test_deep_steady_states_are_noted(depth, deep, tmp_path):
     _, notes = run(chamfered(tmp_path, depth))
     assert ("the steady state touches where the unworn faces are up to" in notes) is deep
     assert ("apart: wear of this depth comes to 10" in notes) is deep
+
+
+def test_a_face_that_is_drawn_tilted_is_not_deep(tmp_path):
+    """requirement: what a free rotation of the holder closes is not worn off."""
+    case = chamfered(tmp_path, 0.0, tilt=0.1)
+    free = case | {"holder": {"free": ["z", "rotation"]}}
+    assert "the steady state touches" not in run(free)[1]
+    assert "are up to 4" in run(case)[1]

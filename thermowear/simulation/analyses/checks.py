@@ -236,11 +236,16 @@ def changed_by_updates(summary: Mapping[str, Any]) -> str | None:
 
 
 def _deep_steady(system: System, interface: InterfaceFields) -> str | None:
-    """Note on unworn faces so far apart that wear that closes their gaps is not small."""
-    depth, unworn = np.zeros((2, len(interface.pressure))), system.contacts.gap
-    for own in system.contacts.ranges:
-        gap = np.where(interface.pressure[own] > 0.0, unworn[own], -np.inf)
-        depth[:, own] = np.maximum(gap.max() - unworn[own], 0.0) if np.isfinite(gap.max()) else 0.0
+    """Note on unworn faces so far apart that wear that closes their gaps is not small.
+
+    Gaps that motions of the holders close are left out.
+    """
+    presses, modes = interface.pressure > 0.0, system.holder.modes
+    motion = np.linalg.lstsq(modes[presses], system.contacts.gap[presses], rcond=None)[0]
+    unworn, depth = system.contacts.gap - modes @ motion, np.zeros((2, len(presses)))
+    for own in (own for own in system.contacts.ranges if presses[own].any()):
+        largest = unworn[own][presses[own]].max()
+        depth[:, own] = np.where(presses[own], largest - unworn[own], 0.0)
     depth[[side for side in (0, 1) if side not in system.laws]] = 0.0
     fraction = GapWear(system).fraction(depth)
     if fraction <= _SMALL:

@@ -24,7 +24,7 @@ from ..runtime.observer import Observer
 from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
-from ..time.time_loop import Moment, StepSizes, is_over, moments
+from ..time.time_loop import Moment, StepSizes, is_over, is_steady, moments
 from .geometry_update import settled, updated
 from .moving_faces import KEPT, STEPPED, MovingFaces, smoothed_wear, steps_grow
 from .thickness import thicknesses
@@ -38,8 +38,6 @@ _ROOM = 5.0
 """Upper limit of the allowed fraction, as a multiple of the automatic one."""
 _TILT = 0.1
 """Weight of the element tilt: depth difference of its ends relative to its size."""
-Principle = Callable[[System], SteadyState | None]
-"""Steady state that a system approaches; None if there is none."""
 
 
 class GapWear:
@@ -144,7 +142,7 @@ class OuterLoop:
         self,
         problem: InterfaceProblem,
         settings: TransientAnalysis,
-        principle: Principle,
+        principle: Callable[[System], SteadyState | None],
         sizes: StepSizes,
         observer: Observer,
     ):
@@ -275,12 +273,13 @@ class OuterLoop:
 
         One that takes the pressure away from the steady state is left out: wear stays in the gap.
         """
-        former, (moved, after) = now.problem, self._update(now, last)
-        states, tolerance = (before.state, last.state, after.state), self._settings.tolerance
-        state = settled(former, moved.problem, *states, before.time, after.step, tolerance)
+        (moved, after), settings = self._update(now, last), self._settings
+        states, tolerance = (before.state, last.state, after.state), settings.tolerance
+        state = settled(now.problem, moved.problem, *states, before.time, after.step, tolerance)
         distance = moved.problem.distance(state, moved.steady)
-        after = replace(after, state=state, distance=distance)
-        return (moved, after) if is_over(self._settings, after) else (now, last)
+        if is_steady(settings, last.distance) and not is_steady(settings, distance):
+            return now, last
+        return moved, replace(after, state=state, distance=distance)
 
     def _update(self, now: MeshPeriod, last: Moment) -> tuple[MeshPeriod, Moment]:
         """Period and moment after moving the meshes; adapts the allowed fraction."""

@@ -28,7 +28,6 @@ from .moment import Moment
 _FAR_SMALLER = 1e-3
 """Size ratio of trial steps for detecting jumps: time errors fall at least by its square root."""
 _SMALLEST = 1e-12  # relative to the elapsed time; at the start to 1e-12 s
-
 _HIT = 1e-9
 """Distance to a target time, relative to the time left, at which a step is taken to end there."""
 _FEW = 5
@@ -170,8 +169,7 @@ def moments(
     Raises
     ------
     ComputationError
-        If the number of steps becomes too large; a `StandstillError` if the step becomes too small.
-        Yielded states stay valid.
+        If steps become too many, or too small (`StandstillError`). Yielded states stay valid.
     """
     sizes = sizes or AnySize()
     if last is None:
@@ -206,8 +204,14 @@ def is_over(settings: TimedAnalysis, last: Moment) -> bool:
     """Test whether the running-in ends with this state."""
     if settings.steps:
         return last.number == len(settings.steps)
-    steady = settings.until == "steady" and last.distance <= settings.steady_tolerance
-    return steady or last.time >= max((settings.end_time, *settings.output_times))
+    end = max((settings.end_time, *settings.output_times))
+    return is_steady(settings, last.distance) or last.time >= end
+
+
+def is_steady(settings: TimedAnalysis, distance: float) -> bool:
+    """Test for the steady state; for one near it with steps of a run with other parameters."""
+    most = settings.steady_tolerance * (2 if settings.steps else 1)
+    return settings.until == "steady" and distance <= most
 
 
 @dataclass(frozen=True)
@@ -234,8 +238,7 @@ class _Steps:
                 f"{self.settings.type}: the given step from {last.time:g} to {time:g} s failed "
                 f"({failure})"
             ) from None
-        own = {"time": time, "step": step, "error": math.nan, "wanted": step}
-        return self._moment(last, target, state, **own)
+        return self._moment(last, target, state, time=time, step=step, error=math.nan, wanted=step)
 
     def _controlled(self, target: float, last: Moment) -> Moment:
         """Step whose error is within the tolerance."""
@@ -267,8 +270,7 @@ class _Steps:
         With pointwise contact, an error that does not decrease in a far smaller step is a jump: a
         point begins to press suddenly. That step, which ends right behind the event, is accepted.
 
-        Returns the step with its size, and the size of the next one as proposed by error control
-        [s].
+        Returns the step, its size, and that of the next one as proposed by error control [s].
         """
         tolerance, rounding = self.settings.tolerance, self.sizes.rounding
         trouble, step = "", size(last.wanted)

@@ -2,6 +2,7 @@
 
 import warnings
 
+import numpy as np
 import pytest
 
 import thermowear as tw
@@ -94,7 +95,13 @@ def test_heat_carried_along_as_by_several_bodies(tmp_path):
     """requirement: the same temperature as in the form with motions."""
     held = {"type": "file", "path": str(tmp_path / "blocks.msh"), "bodies": NAMES["bodies"]}
     case = strip(tmp_path, TRACK, {"advection": "resolved"})
-    pair = tw.run(tw.load(case)).summary["max_temperature_K"]
+    ahead = tw.run(tw.load(case))
+    back = tw.run(tw.load(case | {"motion": {"velocity": "-5 mm/s"}}))
+    rise = ahead.interface.temperature_2
+    assert back.interface.temperature_2[::-1] == pytest.approx(rise, rel=1e-9)
+    along = np.corrcoef(ahead.interface.x, rise)[0, 1]  # the plate moves along -x under the punch
+    assert along < -0.5
+    pair = ahead.summary["max_temperature_K"]
     for key in ("geometry", "load", "motion"):
         case.pop(key)
     surfaces = {

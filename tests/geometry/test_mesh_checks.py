@@ -364,8 +364,8 @@ def test_bodies_of_a_wrong_unit(tmp_path):
     metres = {"length_unit": "100 m", "load": {"force": "1 kN"}}
     found = notes(tmp_path, blocks(), **metres)
     assert found == [
-        "geometry.length_unit: 'punch' is 4 m large; wrong unit of length?",
-        "geometry.length_unit: 'plate' is 6 m large; wrong unit of length?",
+        "geometry.length_unit: 'punch' is 4 m large; wrong length_unit?",
+        "geometry.length_unit: 'plate' is 6 m large; wrong length_unit?",
     ]
     light = {"thickness": "1 m", "load": {"force": "20 mN"}}
     assert notes(tmp_path, blocks(), **light) == [

@@ -595,9 +595,9 @@ def test_a_surface_of_the_file_that_is_not_listed(tmp_path):
         return next(fault for fault in error.value.faults if fault.startswith("heat.flux"))
 
     listed = {"surfaces": GMSH_NAMES["surfaces"] | {"foot": "BOTTOM"}, "fixed": "foot"}
-    assert line("TOP", held="HELD").startswith(
+    assert line("TOP", held="HELD") == (
         "heat.flux.TOP: in the file, but not listed: add it to geometry.surfaces: TOP = 'TOP'; "
-        "listed are: punch_face"
+        "listed are: punch_face, plate_face, HELD, BOTTOM"
     )
     assert "unknown name in this geometry; must be one of: punch_face" in line("BOTTOM", **listed)
     assert "unknown name" in line("elsewhere")

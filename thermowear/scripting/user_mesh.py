@@ -147,7 +147,7 @@ def user_meshes(bodies: tuple[MeshBody, ...]) -> UserMeshes:
         checked = [_oriented(_in_model(piece)) for piece in pieces if piece is not None]
         pairs = zip(checked, bodies, strict=True)
         tagged = joined([_tagged(piece, body) for (piece, _), body in pairs])
-        note_size(tagged, "Body.mesh")
+        note_size(tagged, "Body.mesh", "unit of length")
         return tagged.checksum(), tagged, tuple(turned for _, turned in checked)
 
     checksum, tagged, reversed_cells = on_root(bodies[0].mesh.comm, gathered)

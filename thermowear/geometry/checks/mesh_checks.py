@@ -179,12 +179,12 @@ def described(mesh: AnyMesh) -> list[str]:
     return lines
 
 
-def note_size(mesh: AnyMesh, key: str = "geometry.length_unit") -> None:
+def note_size(mesh: AnyMesh, key: str = "geometry.length_unit", unit: str = "length_unit") -> None:
     """Note a body that is larger than usual ones, as in a wrong unit of length at a key."""
     for body in mesh.bodies:
         size = float(np.ptp(points_of(mesh, body), axis=0).max())
         if size > _LARGE:
-            note(f"{key}: {body!r} is {size:.4g} m large; wrong unit of length?")
+            note(f"{key}: {body!r} is {size:.4g} m large; wrong {unit}?")
 
 
 def note_pressure(key: str, pressure: float) -> None:

@@ -58,7 +58,7 @@ def test_the_leading_space_keeps_its_static_modes():
 
 def one(a=2.0, b=3.0, h=5.0, k=7.0, c=0.0, m=1.0):
     """One temperature and one pressure: ``λ = (b θ - ω)/a``."""
-    return PerturbationMatrices(*(np.array([[v]]) for v in (a, -b, h, k, c, m)))
+    return PerturbationMatrices(*(np.array([[v]]) for v in (a, -b, h, k, c, m)), diffusion_rate=0.3)
 
 
 def test_growth_without_wear():
@@ -91,3 +91,24 @@ def test_wear_makes_it_swing():
 def test_an_uneven_face_that_does_not_wear_is_no_disturbance():
     """requirement: rates that vanish are left out."""
     assert one().growth(0.5, np.array([[0.0]])) == pytest.approx(0.5 * 7.5 - 7)
+
+
+def test_fast_rates_leave_slow_ones_accurate():
+    """requirement: a slow decay to 1e-10 beside rates that are 1e14 times faster."""
+    rng = np.random.default_rng(1)
+    half = rng.standard_normal((8, 8))
+    coupled, scales = half @ half.T + 8 * np.eye(8), np.geomspace(1.0, 1e7, 8)
+    no = np.zeros((1, 8))
+    small = PerturbationMatrices(
+        elastic=np.eye(1),
+        opening=no,
+        heated=no.T,
+        conducted=scales[:, None] * coupled * scales,
+        carried=np.zeros((8, 8)),
+        stored=np.eye(8),
+        diffusion_rate=1.0,
+    )
+    # eigenvalues of the inverse of a scaled matrix, in which the slow one is the largest
+    times = np.linalg.eigvalsh(np.linalg.inv(coupled) / scales[:, None] / scales)
+    assert small.growth(1.0) == pytest.approx(-1 / times[-1], rel=1e-10)
+    assert small.fastest(1.0).value == pytest.approx(-1 / times[-1], rel=1e-10)

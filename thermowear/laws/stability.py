@@ -24,8 +24,8 @@ from scipy.linalg import null_space, orth, schur
 
 _REAL = 1e-7
 """Imaginary part, relative to the largest eigenvalue, of those that count as real."""
-_ROUNDING = 1e-13
-"""Relative growth rate, by the largest one, below which a mode is stationary."""
+_STATIONARY = 1e-10
+"""Growth rate, relative to that of diffusion, below which a mode is stationary."""
 _RANGE, _STRIDE = 1e5, 1.5
 """Search range of an onset around its start, and step of the search, as speed factors."""
 
@@ -167,6 +167,9 @@ class PerturbationMatrices:
         Q at the given speed.
     conducted, carried, stored : ndarray, shape (r, r)
         K, C at the given speed, and M.
+    diffusion_rate : float
+        Rate of heat diffusion across the contact [1/s], the order of the slow rates. Only its order
+        of magnitude matters.
     """
 
     elastic: np.ndarray
@@ -175,6 +178,7 @@ class PerturbationMatrices:
     conducted: np.ndarray
     carried: np.ndarray
     stored: np.ndarray
+    diffusion_rate: float
 
     def fastest(self, factor: float, wear: np.ndarray | None = None) -> Rate:
         """Perturbation with the largest growth rate.
@@ -186,9 +190,10 @@ class PerturbationMatrices:
         wear : ndarray, shape (q, q), optional
             Wear operator S at that speed.
         """
-        matrix, pressure = self._evolution(factor, wear)
-        rates, states = np.linalg.eig(matrix)
-        best = int(np.argmax(np.where(_changing(rates), rates.real, -np.inf)))
+        response, pressure = self._response(factor, wear)
+        parts, states = np.linalg.eig(response)
+        rates = self.diffusion_rate + 1 / parts
+        best = int(np.argmax(np.where(self._changes(rates), rates.real, -np.inf)))
         value, state = complex(rates[best]), states[:, best]
         if value.imag < 0:
             value, state = value.conjugate(), state.conj()
@@ -196,8 +201,8 @@ class PerturbationMatrices:
 
     def growth(self, factor: float, wear: np.ndarray | None = None) -> float:
         """Largest real part of the rates of nonstationary modes [1/s]."""
-        rates = np.linalg.eigvals(self._evolution(factor, wear)[0])
-        changing = rates[_changing(rates)]
+        rates = self.diffusion_rate + 1 / np.linalg.eigvals(self._response(factor, wear)[0])
+        changing = rates[self._changes(rates)]
         return float(changing.real.max()) if len(changing) else 0.0
 
     def onset(
@@ -231,19 +236,23 @@ class PerturbationMatrices:
             factor = following
         return None
 
-    def _evolution(self, factor: float, wear: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
-        """Evolution matrix of temperatures and worn depths, and their operator to the pressure."""
-        q = len(self.elastic)
+    def _response(self, factor: float, wear: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+        """Response ``(J - σ E)⁻¹ E`` of temperatures and worn depths x, and their pressures.
+
+        Perturbations follow ``E dx/dt = J x``; σ is the rate of diffusion. Eigenvalues of the
+        response are ``1/(s - σ)``, the slow rates its large ones: those of ``E⁻¹ J`` would have
+        the rounding errors of the fastest rates, which are larger by many orders of magnitude.
+        """
+        q, r = len(self.elastic), len(self.stored)
         opened = self.opening if wear is None else np.hstack([self.opening, np.eye(q)])
         pressure = -np.linalg.solve(self.elastic, opened)
         flow = factor * self.heated @ pressure
-        r = len(self.stored)
         flow[:, :r] -= self.conducted + factor * self.carried
-        change = np.linalg.solve(self.stored, flow)
+        storage = np.eye(len(opened.T))
+        storage[:r, :r] = self.stored
         if wear is not None:
-            change = np.vstack([change, wear @ pressure])
-        return change, pressure
+            flow = np.vstack([flow, wear @ pressure])
+        return np.linalg.solve(flow - self.diffusion_rate * storage, storage), pressure
 
-
-def _changing(rates: np.ndarray) -> np.ndarray:
-    return np.abs(rates) > _ROUNDING * np.abs(rates).max()
+    def _changes(self, rates: np.ndarray) -> np.ndarray:
+        return np.abs(rates) > _STATIONARY * self.diffusion_rate

@@ -85,8 +85,9 @@ class GrowthModel:
         self._fields = np.zeros((len(system.thermal.conduction.fixed), 0))
         self._crossing = np.zeros((len(system.weights), 0))
         self._rates: list[float] = []
-        slowest = self._thermal.diffusivity / min(p.extent for p in self._system.contacts.each) ** 2
-        for rate in (0.0, *(part * slowest for part in _SPREAD)):
+        extent = min(part.extent for part in system.contacts.each)
+        self._diffusion_rate = system.thermal.diffusivity / extent**2
+        for rate in (0.0, *(self._diffusion_rate * _SPREAD)):
             self.add(rate)
 
     def refined(
@@ -148,6 +149,7 @@ class GrowthModel:
             conducted=kept - carried,
             carried=carried,
             stored=self._product(conduction.capacity, X),
+            diffusion_rate=self._diffusion_rate,
         )
 
     def _extend(self, fields: np.ndarray, crossing: np.ndarray) -> None:

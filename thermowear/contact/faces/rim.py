@@ -74,6 +74,15 @@ def near_chosen(face: FacetSet, chosen: np.ndarray, facet: np.ndarray, t: np.nda
     return at_ends | np.any(on_edges(face, t, _NEAR_EDGE) & chosen[facet], axis=1)
 
 
+def rim_edges(face: FacetSet) -> tuple[np.ndarray, np.ndarray]:
+    """Facets and edges at the rim of a face: edges of one facet only, shape (n,) each."""
+    edges = edges_of(face.kind)
+    keys = np.sort(face.corner_numbers[:, edges].reshape(-1, edges.shape[1]), axis=1)
+    _, number, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
+    facet, edge = np.nonzero((count[number.ravel()] == 1).reshape(-1, len(edges)))
+    return facet, edge
+
+
 def rim(face: FacetSet, body: BodyMesh, paired: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
     """Sharp edges at the rim of a face, and edges where the surface goes on. Every rank calls.
 
@@ -90,10 +99,9 @@ def rim(face: FacetSet, body: BodyMesh, paired: Sequence[str]) -> tuple[np.ndarr
     sharp, goes_on : ndarray of bool, shape (n_facets, n_edges)
     """
     edges = edges_of(face.kind)
-    keys = np.sort(face.corner_numbers[:, edges].reshape(-1, edges.shape[1]), axis=1)
-    _, number, count = np.unique(keys, axis=0, return_inverse=True, return_counts=True)
-    at_rim = (count[number.ravel()] == 1).reshape(-1, len(edges))
-    facet, edge = np.nonzero(at_rim)
+    facet, edge = rim_edges(face)
+    at_rim = np.zeros((len(face.nodes), len(edges)), dtype=bool)
+    at_rim[facet, edge] = True
     middles = face.corner_points[facet[:, None], edges[edge]].mean(axis=1)
     ends = lattice(1, face.kind).reshape(-1, face.dim)[edges[edge]].mean(axis=1)
     t = ends[:, 0] if face.dim == 1 else ends

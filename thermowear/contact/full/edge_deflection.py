@@ -69,7 +69,7 @@ def edge_deflection(
 
 
 def wave_compliance(elastic: Elasticity, pairing: Pairing, degree: int) -> np.ndarray:
-    """Compliance ε of the shortest pressure waves on the facets of body 1, shape (n,) [m/Pa].
+    """Compliance ε of the shortest pressure waves on the carrying facets, shape (n,) [m/Pa].
 
     The deflection of half-spaces under a pressure ``cos κ x`` is ``2/(E* κ)`` times it (Johnson,
     Contact Mechanics, 1985, section 13.2); the shortest wave has `degree` half-waves on a facet of
@@ -79,5 +79,5 @@ def wave_compliance(elastic: Elasticity, pairing: Pairing, degree: int) -> np.nd
     for side in pairing.sides:
         λ, μ, _ = lame_at_points(elastic, side)
         softness += (λ + 2 * μ) / (4 * μ * (λ + μ))
-    side = pairing.sides[0]
+    side = pairing.carrying
     return 2 * softness * side.face.sizes[side.facet] / (np.pi * degree)

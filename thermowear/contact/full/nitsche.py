@@ -1,4 +1,6 @@
-"""Nitsche's method: normal stress of body 1 at the contact points, and stabilisation parameters.
+"""Nitsche's method: normal stress at the contact points, and stabilisation parameters.
+
+The stress is that of the body whose face carries the points, here body 1.
 
 The traction operator maps nodal displacements to the normal stress, transposed and distributed like
 the operators of `traces`. The parameters, of the penalty method too, come from the cells at the
@@ -103,7 +105,7 @@ def cell_traction(
 
 def thermal_traction(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
     """Thermal modulus m: a rise adds ``-m rise`` to the normal traction, shape (n,) [Pa/K]."""
-    return lame_at_points(elastic, pairing.sides[0])[2]
+    return lame_at_points(elastic, pairing.carrying)[2]
 
 
 def lame_at_points(elastic: Elasticity, side: PairedFace) -> np.ndarray:
@@ -166,7 +168,7 @@ def on_every_facet(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray
     share : ndarray
         Sums to one at each point.
     """
-    side, s = pairing.sides[0], pairing.position
+    side, s = pairing.carrying, pairing.position
     if side.face.dim == 2:
         return _on_every_part(pairing)
     inner = np.arange(1, len(s) - 1)
@@ -184,7 +186,7 @@ def on_every_facet(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray
 
 def _on_every_part(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray]:
     """Points of a surface on all parts of its facets, see `on_every_facet`."""
-    side, pieces = pairing.sides[0], pairing.pieces
+    side, pieces = pairing.carrying, pairing.pieces
     every = PairedFace(side.face, pieces.facet, pieces.t)
     point = cKDTree(side.points).query(every.points)[1]
     area = pieces.weight * side.face.stretch(pieces.facet, pieces.t)

@@ -1,9 +1,15 @@
-"""Pressure on the face of body 1: its space, the gap orthogonal to it, and the contact zones.
+"""Pressure on a contact face: its space, the gap orthogonal to it, and the contact zones.
 
 The pressure space consists of continuous piecewise Bernstein polynomials, on quadrilaterals tensor
 products in both parameters. They are nonnegative and sum to one, so that coefficients ``λ >= 0``
 give a pressure without tension, and each weak gap is a mean of the gap with nonnegative weights.
 They jump at the borders of materials that wear by different laws, as the steady pressure does.
+
+Where the other face ends within a facet, functions beyond its edge keep a sliver of their support.
+They have next to no area, and would follow the pressure at the edge, which is singular there, down
+to the width of the sliver. Functions with less than a fraction of their area are therefore joined
+to their neighbours, as cut elements are aggregated (Badia, Verdugo and Martín, Comput. Methods
+Appl. Mech. Eng. 336 (2018) 533), here by nonnegative shares, so that the sum remains one.
 """
 
 from __future__ import annotations
@@ -19,11 +25,15 @@ import scipy.sparse as sp
 from scipy.special import comb, factorial
 
 from ...lagrange import lattice
-from ..faces.face import Surface
+from ..faces.face import Face, Surface
 from ..search.contacts import Contacts
 from ..search.pairing import Pairing
 
 Basis: TypeAlias = "np.ndarray | sp.csr_array"
+_LEAST_COVERED = 0.25
+"""Fraction of the area of a basis function, on the facets in contact, that must face the other body."""
+_NEAREST = 8
+"""Power of the distance by which shares in farther neighbours fall: nearly the nearest alone."""
 _ZERO_PRESSURE = 1e-9  # of the largest pressure
 _FIT_FRACTION = 0.8  # fraction of half a zone used to fit its edge
 _DEGREE = 2
@@ -90,14 +100,15 @@ def pressure_basis(pairing: Pairing, degree: int) -> Basis:
     Returns
     -------
     ndarray or csr_array, shape (n_points, n_functions)
-        Functions without contact points in their support are omitted.
+        Functions without contact points in their support are omitted, those with few are joined.
     """
-    side = pairing.sides[0]
-    t = side.t.reshape(len(side.facet), -1)
-    values = _on_triangles(degree, t) if side.face.kind == "triangle" else _on_products(degree, t)
-    numbers = side.face.numbers(degree)[side.facet]
+    face, pieces = pairing.carrying.face, pairing.pieces
+    assert pieces.point is not None  # the points are paired
+    t = pieces.t.reshape(len(pieces.facet), -1)
+    values = _on_triangles(degree, t) if face.kind == "triangle" else _on_products(degree, t)
+    numbers = face.numbers(degree)[pieces.facet]
     if jumps(pairing):
-        first, second = pairing.groups
+        first, second = pairing.groups[:, pieces.point]
         group = first * (second.max() + 1) + second
         each = numbers * (group.max() + 1) + group[:, None]
         numbers = np.unique(each, return_inverse=True)[1].reshape(numbers.shape)
@@ -106,8 +117,62 @@ def pressure_basis(pairing: Pairing, degree: int) -> Basis:
     entries = values.ravel(), numbers.ravel(), starts
     basis = sp.csr_array(entries, shape=shape)
     basis.eliminate_zeros()
+    covered = (pieces.weight / face.measure * face.sizes[pieces.facet]) @ basis
+    facet, first = np.unique(pieces.facet, return_index=True)
+    basis = basis[np.unique(pieces.point, return_index=True)[1]]
+    onto = _onto_supported(covered, face, degree, facet, numbers[first])
+    basis = basis if onto is None else (basis @ onto).tocsr()
     basis = basis[:, pairing.weights @ basis > 0.0]
-    return basis if isinstance(side.face, Surface) else basis.toarray()
+    return basis if isinstance(face, Surface) else basis.toarray()
+
+
+def _onto_supported(
+    covered: np.ndarray, face: Face | Surface, degree: int, facet: np.ndarray, numbers: np.ndarray
+) -> sp.csr_array | None:
+    """Shares (M, M) of all functions in those with enough of their area; None if all have.
+
+    Functions far from such ones, as in a contact within a single facet, are judged by the best of
+    them.
+
+    Parameters
+    ----------
+    covered : ndarray, shape (M,)
+        Area of each function opposite to the other face [m or m²].
+    face : Face or Surface
+    degree : int
+    facet : ndarray of int, shape (n_facets,)
+        Facets in contact.
+    numbers : ndarray of int, shape (n_facets, k)
+        Functions on them.
+    """
+    whole, k = np.zeros(len(covered)), numbers.shape[1]
+    np.add.at(whole, numbers, face.sizes[facet, None] / k)  # Bernstein polynomials have equal areas
+    coverage = np.divide(covered, whole, out=np.ones_like(covered), where=whole > 0.0)
+    supported = coverage >= _LEAST_COVERED
+    if supported.all():
+        return None
+    cut = np.any(~supported[numbers], axis=1)
+    facet, numbers = facet[cut], numbers[cut]
+    at = np.tile(lattice(degree, face.kind), (len(facet), *[1] * (face.dim - 1)))
+    places = face.points(np.repeat(facet, k), at).reshape(len(facet), k, -1)
+    first, second = np.nonzero(~np.eye(k, dtype=bool))
+    apart = np.linalg.norm(places[:, first] - places[:, second], axis=2)
+    near = (face.lengths[facet, None] / apart) ** _NEAREST
+    ends = numbers[:, first].ravel(), numbers[:, second].ravel()
+    links = sp.csr_array((near.ravel(), ends), shape=(len(covered),) * 2)
+    onto = sp.diags_array(supported.astype(float)).tocsr()
+    while not supported.all():
+        known = links @ sp.diags_array(supported.astype(float))
+        total = np.where(supported, 0.0, known.sum(axis=1))
+        new = total > 0.0
+        if new.any():
+            parts = np.divide(1.0, total, out=np.zeros_like(total), where=new)
+            onto = onto + sp.diags_array(parts) @ known @ onto
+        else:
+            new = ~supported & (coverage >= _LEAST_COVERED * coverage[~supported].max())
+            onto = onto + sp.diags_array(new.astype(float))
+        supported = supported | new
+    return onto
 
 
 def joined_bases(each: Sequence[Basis]) -> Basis:
@@ -207,7 +272,7 @@ def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, f
     pairing : Pairing
     pressure : ndarray, shape (n,) [Pa]
     """
-    if isinstance(pairing.sides[0].face, Surface):
+    if isinstance(pairing.carrying.face, Surface):
         return []
     pressing = pressure > _ZERO_PRESSURE * pressure.max(initial=0.0)
     change = np.flatnonzero(np.diff(pressing.astype(int), prepend=0, append=0))
@@ -227,7 +292,7 @@ def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, f
 
 def _edge(pairing: Pairing, pressure: np.ndarray, zone: np.ndarray, part: float) -> float:
     """Position of the edge beyond the last point of a zone."""
-    s, facet = pairing.position[zone], pairing.sides[0].facet[zone]
+    s, facet = pairing.position[zone], pairing.carrying.facet[zone]
     distance = np.abs(s - s[-1])
     last = np.unique(np.abs(facet - facet[-1]))[:_SKIPPED_ELEMENTS]
     chosen = ~np.isin(np.abs(facet - facet[-1]), last)

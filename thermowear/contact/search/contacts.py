@@ -91,10 +91,10 @@ class Contacts:
 
     @cached_property
     def facet(self) -> np.ndarray:
-        """Facets of the first bodies, those of each interface numbered after one another, (n,)."""
-        starts = np.cumsum([0, *(len(p.sides[0].face.sizes) for p in self.each[:-1])])
+        """Facets of the carrying faces, those of each interface numbered after one another, (n,)."""
+        starts = np.cumsum([0, *(len(p.carrying.face.sizes) for p in self.each[:-1])])
         parts = zip(starts, self.each, strict=True)
-        return _concatenated([start + p.sides[0].facet for start, p in parts])
+        return _concatenated([start + p.carrying.facet for start, p in parts])
 
     @cached_property
     def in_space(self) -> bool:

@@ -67,7 +67,7 @@ class PairedFace:
 
 @dataclass(frozen=True)
 class Pairing:
-    """Contact points; in a plane model, in order along the face of body 1.
+    """Contact points; in a plane model, in order along the face that carries them.
 
     Attributes
     ----------
@@ -86,12 +86,15 @@ class Pairing:
     sides : tuple of PairedFace
         Points on body 1 and on body 2.
     unpaired : float
-        Fraction of the face of body 1 without an opposite face, which cannot touch.
+        Fraction of the carrying face without an opposite face, which cannot touch.
     groups : ndarray of int, shape (2, n)
         Group of equally wearing materials of body 1 and of body 2 at each point. Points at a border
         of groups exist once for each.
     pieces : Rule
-        Quadrature rule on all pieces of the facets of body 1, and the points merged from it.
+        Quadrature rule on all pieces of the facets of the carrying face, and the points merged from
+        it.
+    carrier : int
+        Side (0 or 1) whose facets carry the points and the pressure space.
     """
 
     points: np.ndarray
@@ -104,6 +107,26 @@ class Pairing:
     unpaired: float
     groups: np.ndarray
     pieces: Rule
+    carrier: int = 0
+
+    @property
+    def carrying(self) -> PairedFace:
+        """Points on the face whose facets carry them and the pressure space."""
+        return self.sides[self.carrier]
+
+    @property
+    def exchanged(self) -> Pairing:
+        """The same points with the bodies in the other order."""
+        first, second = self.sides
+        return replace(
+            self,
+            position=second.position,
+            normals=-self.normals,
+            share=1.0 - self.share,
+            sides=(second, first),
+            groups=self.groups[::-1],
+            carrier=1 - self.carrier,
+        )
 
     @property
     def extent(self) -> float:
@@ -135,11 +158,12 @@ def pair(
     sliver: float = SLIVER,
     max_overhang: float = OVERHANG_TOLERANCE,
     comm=None,
+    carrier: int = 0,
 ) -> Pairing:
     """Pair two faces on their common refinement.
 
-    The facets of body 1 are cut at the ends of facets of body 2, see `refinement`. Each piece has a
-    Gauss-Lobatto rule; points shared by pieces are merged.
+    The facets of the carrying face are cut at the ends of facets of the other one, see
+    `refinement`. Each piece has a Gauss-Lobatto rule; points shared by pieces are merged.
 
     Parameters
     ----------
@@ -149,19 +173,24 @@ def pair(
         Points per piece, on a surface per direction; the rule is exact to degree
         ``2 order - 3``.
     refine : bool
-        False: no cuts, one rule per facet of body 1.
+        False: no cuts, one rule per facet of the carrying face.
     sliver : float
         Smallest distance of a cut from the ends of a facet, relative to it; plane models only.
     max_overhang : float
         Linear extrapolation of body 2 beyond its ends, relative to the face; plane models only.
     comm : mpi4py.MPI.Comm, optional
         Ranks that share the work, each with both faces; every rank calls.
+    carrier : int, optional
+        Side whose facets carry the points, see `carrier.carrying_side`.
 
     Raises
     ------
     CaseError
         If no point of body 1 faces body 2, or it is not clear which points meet.
     """
+    if carrier:
+        given = kinematics, order, refine, sliver, max_overhang, comm
+        return pair(face_2, face_1, *given).exchanged
     pieces = rule(face_1, face_2, order, refine, sliver, max_overhang)
     if len(pieces.facet) == 0:
         raise CaseError(

@@ -91,8 +91,8 @@ def _compliance(
     weights, sizes = contacts.weights, np.empty(len(probe))
     softness = np.empty(len(probe))
     for pairing, own in contacts:
-        side = pairing.sides[0]
-        sizes[own] = side.face.lengths[side.facet]  # of the facets of body 1 at the points
+        side = pairing.carrying
+        sizes[own] = side.face.lengths[side.facet]  # of the carrying facets at the points
         probed = weights[own] * probe[own]
         softness[own] = (probed @ found[own]) / (probed * probe[own] @ sizes[own])
     mixed = (weights[:, None] * basis).T @ opened

@@ -265,7 +265,8 @@ def _finer(system: System) -> System:
         face_1, face_2 = (side.face for side in coarse.sides)
         lobatto = interface.pressure_degree == "lobatto"
         order = model.discretisation.degree + (2 if lobatto else 3)
-        finer.append(pair(face_1, face_2, kinematics, order, refine=not lobatto))
+        given = face_1, face_2, kinematics, order
+        finer.append(pair(*given, refine=not lobatto, carrier=coarse.carrier))
     driven = system.holder.rigid_modes
     contacts = replace(system.contacts, each=tuple(finer))
     contact = sliding_contact(model, kinematics, contacts, driven)

@@ -132,9 +132,10 @@ def analyse(
             observer.note(note)
     for pairing in system.contacts.each:
         if pairing.unpaired > _UNPAIRED:
-            face = f"of {pairing.sides[0].face.name}" if len(system.contacts.each) > 1 else ""
+            several, number = len(system.contacts.each) > 1, pairing.carrier + 1
+            face = pairing.carrying.face.name if several else f"of body {number}"
             observer.note(
-                f"{100 * pairing.unpaired:.2g} % of the contact face {face or 'of body 1'} has "
+                f"{100 * pairing.unpaired:.2g} % of the contact face {face} has "
                 "nothing opposite and stays out of the contact"
             )
     if isinstance(analysis, StaticAnalysis):

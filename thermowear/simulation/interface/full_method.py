@@ -112,7 +112,7 @@ class FullMethod:
         """Solve contact of bodies distorted by the friction heat of a pressure."""
         assert self._system.thermal is not None
         faces = heat.faces(conditions, pressure)
-        traction = -np.asarray(self._softening) * faces.rise[0]
+        traction = -np.asarray(self._softening) * faces.rise[self._system.pairing.carrier]
         loads = self._dead + self._system.thermal.forces(heat.rise(faces))
         return self._contact.solve(gap, conditions.load, slope, loads, traction, start, edge)
 

@@ -12,6 +12,7 @@ from ...bulk.kinematics import Kinematics
 from ...contact.faces.face import Face, Surface
 from ...contact.faces.projection import ray_intersections
 from ...contact.operators.pressure import Basis, jumps, pressure_basis
+from ...contact.search.carrier import carrying_side
 from ...contact.search.pairing import Pairing, pair, paired
 from ...contact.search.refinement import OVERHANG_TOLERANCE, SLIVER
 from ...contact.wear.worn_face import directions_between
@@ -146,10 +147,12 @@ def _points(
 ) -> tuple[Pairing, Basis]:
     """Contact points of two faces, and pressure space Ψ; parameters as in `pair`."""
     degree = model.discretisation.degree
-    if interface.pressure_degree == "lobatto":  # at the nodes of body 1's facets
+    # worn faces are followed by the points of body 1
+    carrier = 0 if model.wears else carrying_side(face_1, face_2)
+    if interface.pressure_degree == "lobatto":  # at the nodes of the facets
         if isinstance(face_1, Surface):
             raise CaseError(f"{interface.table}.pressure_degree: 'lobatto' is for sections")
-        pairing = pair(face_1, face_2, kinematics, degree + 1, refine=False)
+        pairing = pair(face_1, face_2, kinematics, degree + 1, refine=False, carrier=carrier)
         _check_jumps(model, interface, pairing)
         return pairing, np.eye(len(pairing.weights))
     pairing = pair(
@@ -160,6 +163,7 @@ def _points(
         sliver=sliver,
         max_overhang=max_overhang,
         comm=comm,
+        carrier=carrier,
     )
     _check_jumps(model, interface, pairing)
     return pairing, pressure_basis(pairing, model.pressure_degree(interface))

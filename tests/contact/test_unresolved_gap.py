@@ -22,7 +22,7 @@ def face():
     shapes = local @ np.linalg.inv(nodes)
     basis = np.zeros((len(facet), FACETS * DEGREE + 1))
     np.put_along_axis(basis, facet[:, None] * DEGREE + np.arange(DEGREE + 1), shapes, axis=1)
-    pairing = SimpleNamespace(weights=np.tile(w / 2, FACETS), sides=(SimpleNamespace(facet=facet),))
+    pairing = SimpleNamespace(weights=np.tile(w / 2, FACETS), carrying=SimpleNamespace(facet=facet))
     return pairing, basis, facet + np.tile(t, FACETS)
 
 

@@ -26,6 +26,8 @@ _SAME = 1e-9
 """Largest distance of the middles of one edge in two facets, relative to the size of the face."""
 _ON_EDGE = 1e-3
 """Largest distance of a point on an edge of its facet, in parameters."""
+_ALONG = 9
+"""Number of places along an edge that stand for it."""
 _NEAR_EDGE = 1e-2
 """Such a distance of points in slivers beside curved edges of the other face."""
 
@@ -72,6 +74,17 @@ def near_chosen(face: FacetSet, chosen: np.ndarray, facet: np.ndarray, t: np.nda
     away = np.abs(t.reshape(len(t), 1, face.dim) - corners).max(axis=2)
     at_ends = np.any((away < _NEAR_EDGE) & ends[facet], axis=1)
     return at_ends | np.any(on_edges(face, t, _NEAR_EDGE) & chosen[facet], axis=1)
+
+
+def along_edges(face: FacetSet, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Facets and parameters of places along chosen edges (n_facets, n_edges), ends included."""
+    facet, edge = np.nonzero(chosen)
+    corners = lattice(1, face.kind).reshape(-1, face.dim)
+    ends = corners[edges_of(face.kind)[edge]]
+    part = np.linspace(0.0, 1.0, _ALONG if face.dim > 1 else 1)[:, None]
+    t = ends[:, :1] + part * (ends[:, -1:] - ends[:, :1])
+    facet = np.repeat(facet, len(part))
+    return facet, t.reshape(-1) if face.dim == 1 else t.reshape(-1, face.dim)
 
 
 def rim_edges(face: FacetSet) -> tuple[np.ndarray, np.ndarray]:

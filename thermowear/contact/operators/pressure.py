@@ -112,15 +112,16 @@ def pressure_basis(pairing: Pairing, degree: int) -> Basis:
         group = first * (second.max() + 1) + second
         each = numbers * (group.max() + 1) + group[:, None]
         numbers = np.unique(each, return_inverse=True)[1].reshape(numbers.shape)
+    facet, piece = np.unique(pieces.facet, return_index=True)
+    of_facets = numbers[piece]
     starts = np.arange(len(values) + 1) * values.shape[1]
     shape = len(values), numbers.max() + 1
     entries = values.ravel(), numbers.ravel(), starts
     basis = sp.csr_array(entries, shape=shape)
     basis.eliminate_zeros()
     covered = (pieces.weight / face.measure * face.sizes[pieces.facet]) @ basis
-    facet, first = np.unique(pieces.facet, return_index=True)
     basis = basis[np.unique(pieces.point, return_index=True)[1]]
-    onto = _onto_supported(covered, face, degree, facet, numbers[first])
+    onto = _onto_supported(covered, face, degree, facet, of_facets)
     basis = basis if onto is None else (basis @ onto).tocsr()
     basis = basis[:, pairing.weights @ basis > 0.0]
     return basis if isinstance(face, Surface) else basis.toarray()

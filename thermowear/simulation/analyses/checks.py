@@ -25,6 +25,8 @@ from ..system.system import System
 
 _ANALYSES = ("initial", "transient", "fretting", "reciprocating")
 """Analyses with a defined holder position; a steady state has no history leading to one."""
+_WORN_IN = ("steady", "stability")
+"""Analyses whose pressure is that of wear that goes on for ever."""
 _BACK = 1e-9
 """Rounding tolerance of the position, relative to the size of the face."""
 _STEEP = -0.75
@@ -156,6 +158,41 @@ def _ends(system: System, side: PairedFace, pressing: np.ndarray) -> tuple[np.nd
     faces = [one.faces for one in model.interfaces] + [tie.faces for tie in model.ties]
     sharp, goes_on = rim(face, system.bodies.each[face.body], [name for f in faces for name in f])
     return near_chosen(face, sharp, facet, t), np.any(on_edge & goes_on[facet], axis=1)
+
+
+def singular_pressure(end: Snapshot, analysis: Analysis) -> tuple[dict[str, Any], str | None]:
+    """Entries of the summary, and a note, on a pressure that is singular at sharp edges.
+
+    Without entries where no point at such an edge presses that is not worn; a note where the
+    largest pressure is at one. Every rank calls.
+    """
+    system, interface, p = end.system, end.interface, end.interface.pressure
+    if analysis.type in _WORN_IN:
+        return {}, None
+    singular = system.at_singular_edges & (p > 0.0) & (interface.wear_1 + interface.wear_2 == 0.0)
+    each: dict[str, dict] = {}
+    largest, text = 0.0, None
+    for one, (pairing, own) in zip(system.model.interfaces, system.contacts, strict=True):
+        at, force = singular[own], pairing.weights * p[own]
+        if not at.any():
+            continue
+        share, beside = float(force[at].sum() / force.sum()), float(p[own][~at].max(initial=0.0))
+        each[one.name] = {
+            "singular_edge_load_fraction": share,
+            "max_pressure_off_singular_edges_Pa": beside,
+        }
+        if p[own][at].max() > max(beside, largest):
+            largest = float(p[own][at].max())
+            where = f" of the contact {one.name}" if one.name and not system.model.is_pair else ""
+            text = (
+                f"the largest pressure{where}, {largest / 1e6:.4g} MPa, is at a sharp edge of one "
+                "body on the face of the other one, where it is singular: it grows with every "
+                f"refinement. The elements at such edges carry {100 * share:.2g} % of the load; "
+                f"the largest pressure off them is {beside / 1e6:.4g} MPa"
+            )
+    if system.model.is_pair:
+        return next(iter(each.values()), {}), text
+    return {"contacts": each} if each else {}, text
 
 
 def too_hot(summary: Mapping[str, Any]) -> str | None:

@@ -26,6 +26,7 @@ from ..accuracy.error_estimate import estimate_errors
 from ..cycles.fretting import FrettingHistory
 from ..cycles.reciprocating import ReciprocatingHistory
 from ..results.recording import Snapshot, sample
+from ..results.summary import merged
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
 from ..system.system import System
@@ -38,6 +39,7 @@ from .checks import (
     open_contact,
     require_one_way,
     require_support,
+    singular_pressure,
     too_hot,
 )
 from .positioning import prepare
@@ -145,7 +147,10 @@ def analyse(
         history = _STEPPED[type(analysis)](system, analysis, observer)
         last = history.resume(before)
         end, result = history.conclude(history.follow(history.states(last)))
+    entries, singular = singular_pressure(end, analysis)
+    result = replace(result, summary=merged(result.summary, entries))
     found: list[ComputationError | str | None] = [
+        singular,
         contact_at_an_end(end.system, end.contact.pressure),
         inclined_faces(end.system, end.contact.pressure),
         deep_wear(system, analysis, end.interface),

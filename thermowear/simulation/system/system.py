@@ -36,6 +36,7 @@ from ...model.model import Model, Zone
 from ...parallel import sum_over_ranks
 from ...timer import Phases
 from ..points.contact_points import facing_parts
+from ..points.singular_edges import singular_points
 from ..points.worn_geometry import WornGeometry
 from .joint_wear import JointWear
 from .rigid_modes import approaches, dead_resultant, load_directions
@@ -181,6 +182,11 @@ class System:
     def softness(self) -> np.ndarray:
         """Compliance of the layer between the faces, shape (n,) [m/Pa]."""
         return self.contacts.per_point([one.compliance for one in self.model.interfaces])
+
+    @cached_property
+    def at_singular_edges(self) -> np.ndarray:
+        """Points at edges where unworn bodies have a singular pressure, (n,). Every rank calls."""
+        return singular_points(self.bodies, self.contacts, self.softness)
 
     @cached_property
     def friction(self) -> np.ndarray:

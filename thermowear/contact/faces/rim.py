@@ -76,15 +76,15 @@ def near_chosen(face: FacetSet, chosen: np.ndarray, facet: np.ndarray, t: np.nda
     return at_ends | np.any(on_edges(face, t, _NEAR_EDGE) & chosen[facet], axis=1)
 
 
-def along_edges(face: FacetSet, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Facets and parameters of places along chosen edges (n_facets, n_edges), ends included."""
+def beside_edges(face: FacetSet, chosen: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Facets and parameters of places on a face right beside chosen edges (n_facets, n_edges)."""
     facet, edge = np.nonzero(chosen)
     corners = lattice(1, face.kind).reshape(-1, face.dim)
     ends = corners[edges_of(face.kind)[edge]]
     part = np.linspace(0.0, 1.0, _ALONG if face.dim > 1 else 1)[:, None]
     t = ends[:, :1] + part * (ends[:, -1:] - ends[:, :1])
-    facet = np.repeat(facet, len(part))
-    return facet, t.reshape(-1) if face.dim == 1 else t.reshape(-1, face.dim)
+    t = (t + _NEAR_EDGE * (corners.mean(axis=0) - t)).reshape(-1, face.dim)
+    return np.repeat(facet, len(part)), t[:, 0] if face.dim == 1 else t
 
 
 def rim_edges(face: FacetSet) -> tuple[np.ndarray, np.ndarray]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...bulk.bodies import Bodies
-from ...contact.faces.rim import along_edges, rim
+from ...contact.faces.rim import beside_edges, edges_of, rim
 from ...contact.search.carrier import ends_within
 from ...contact.search.common_face import opposite
 from ...contact.search.contacts import Contacts
@@ -37,13 +37,14 @@ def singular_points(bodies: Bodies, contacts: Contacts, softness: np.ndarray) ->
 def _at_edges(bodies: Bodies, pairing: Pairing) -> np.ndarray:
     """Points of an interface at the sharp edges of either face within the other one, (n,)."""
     carrying = pairing.carrying
-    at_edge = np.zeros(len(carrying.face.nodes), dtype=bool)
+    numbers = carrying.face.corner_numbers
+    at_edge = []
     for side, other in (pairing.sides, pairing.sides[::-1]):
         face = side.face
         sharp = rim(face, bodies.each[face.body], [face.name])[0] & ends_within(face, other.face)
-        facet, t = along_edges(face, sharp)
-        if len(facet):
-            own = face is carrying.face
-            at_edge[facet if own else opposite(face, facet, t, other.face).facet] = True
-    numbers = carrying.face.corner_numbers
-    return np.isin(numbers, numbers[at_edge]).any(axis=1)[carrying.facet]
+        if face is carrying.face:
+            at_edge.append(numbers[:, edges_of(face.kind)][sharp].ravel())
+        elif sharp.any():  # cuts facets of the other face
+            cut = opposite(face, *beside_edges(face, sharp), other.face).facet
+            at_edge.append(numbers[cut].ravel())
+    return np.isin(numbers, np.concatenate(at_edge)).any(axis=1)[carrying.facet]

@@ -14,6 +14,7 @@ import scipy.sparse as sp
 
 from ...errors import ComputationError
 from ...serialise import serialisable
+from ..operators.pressure import Basis, PressureSpace, scaled
 from ..search.pairing import Pairing
 from ..solvers.signorini import solve_contact
 from .edge_deflection import EdgeDeflection
@@ -61,6 +62,24 @@ class FullSolution:
     def active(self) -> np.ndarray:
         """Points with positive pressure, shape (n,)."""
         return self.pressure > 0.0
+
+
+def resolved_pressure(basis: Basis, weights: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    """Pressure without tension in the pressure space nearest to one of single points, (n,) [Pa].
+
+    Of equal force. Without a pressure space, pressures scatter in cells that the edge of contact
+    crosses, and follow what is singular as far as the points do; this is what converges.
+
+    Parameters
+    ----------
+    basis : ndarray or csr_array, shape (n, m)
+        Basis Ψ.
+    weights, pressure : ndarray, shape (n,)
+    """
+    space = PressureSpace(basis, scaled(weights, basis))
+    areas = space.weak(np.ones(len(weights)))[:, None]
+    force = np.array([weights @ pressure])
+    return basis @ solve_contact(space.mass, -space.weak(pressure), areas, force).coefficients
 
 
 class FullContact(ContactEquations):

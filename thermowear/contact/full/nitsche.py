@@ -294,9 +294,11 @@ def _cell_stiffness(elastic: ElasticBody, cell: int) -> np.ndarray:
     strain[:, dim, :, 0] = divergence[..., 0] - slopes[..., 0]
     for k, (i, j) in enumerate(across, start=dim + 1):
         strain[:, k, :, [i, j]] = np.moveaxis(slopes[..., [j, i]], 2, 0) / np.sqrt(2)
-    strain *= np.sqrt(2 * μ * weights)[:, None, None, None]
-    trace = (np.sqrt(λ * weights)[:, None, None] * divergence).reshape(len(weights), -1)
-    strain = strain.reshape(-1, trace.shape[1])
-    stiffness = strain.T @ strain + trace.T @ trace
+    # rules in tetrahedra may have negative weights
+    strain, trace = (v.reshape(len(v), -1, slopes[0].size) for v in (strain, divergence))
+    stiffness = np.zeros((slopes[0].size,) * 2)
+    for modulus, parts in ((2 * μ, strain), (λ, trace)):
+        scaled = (modulus * weights)[:, None, None] * parts
+        stiffness += np.concatenate(scaled).T @ np.concatenate(parts)
     stiffness[np.diag_indices_from(stiffness)] += _REGULARISATION * stiffness.max()
     return stiffness

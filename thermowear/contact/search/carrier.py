@@ -16,25 +16,23 @@ from ..faces.face import Face, Surface
 from ..faces.rim import edges_of, rim_edges
 from .common_face import opposite
 
-_BEYOND = 0.05
-"""Distance beyond the rim, in parameters, at which the other face is sought."""
+_BEYOND = 0.2
+"""Distance beyond the rim, relative to that of the rim from the middle of its facet, at which the other face is sought."""
 _CLOSE = 0.5
 """Part of this distance within which rims of both faces coincide."""
 _ALIKE = 1e-6
-"""Relative difference of lengths and areas that count as equal."""
+"""Relative difference of lengths that count as equal, and that of normals."""
 
 
 def carrying_side(face_1: Face | Surface, face_2: Face | Surface) -> int:
     """Side (0 or 1) of the face whose facets carry the contact points.
 
-    That with the longer rim within the other face; of equal ones the smaller face, that with more
-    facets, and that whose mean normal points towards the last negative coordinate.
+    That with the longer rim within the other face; of equal ones that with more facets, and that
+    whose mean normal points towards the last negative coordinate.
     """
-    faces = face_1, face_2
-    ranks = [(_length_within(*pair), -float(pair[0].sizes.sum())) for pair in (faces, faces[::-1])]
-    for one, other in zip(*ranks, strict=True):
-        if abs(one - other) > _ALIKE * max(abs(one), abs(other)):
-            return int(other > one)
+    lengths = _length_within(face_1, face_2), _length_within(face_2, face_1)
+    if abs(lengths[0] - lengths[1]) > _ALIKE * max(lengths):
+        return int(lengths[1] > lengths[0])
     if len(face_1.nodes) != len(face_2.nodes):
         return int(len(face_2.nodes) > len(face_1.nodes))
     apart = _mean_normal(face_2) - _mean_normal(face_1)

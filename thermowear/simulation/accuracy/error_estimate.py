@@ -112,7 +112,7 @@ def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
             enriched = _finer_principle(system, end.contact)
         else:
             enriched = _enriched_pressure(end, bodies, opened)
-        mean, largest = _of_pressure(system, end.contact.pressure, enriched)
+        mean, largest = _of_pressure(system, end.interface.pressure, enriched)
         errors["pressure"] = max(mean, _of_edges(system, end.interface))
         errors["max_pressure"] = largest
     except (CaseError, ComputationError, np.linalg.LinAlgError) as error:

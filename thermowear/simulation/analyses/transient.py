@@ -21,7 +21,7 @@ from ..interface.steady import SteadyState, steady_state
 from ..results.coatings import Face, WearingState, layers, times_since_worn_through
 from ..results.contact_rows import contact_rows
 from ..results.friction import friction_rows
-from ..results.recording import Snapshot, snapshot_at
+from ..results.recording import Snapshot, comparable_pressure, snapshot_at
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.conditions import InterfaceConditions
@@ -181,8 +181,9 @@ class TransientHistory(AnalysisHistory[Moment]):
         return found.get("", {}) if model.is_pair else {"contacts": found}
 
     def _row(self, moment: Moment, slid: float, conditions: InterfaceConditions) -> HistoryRow:
-        system, pressure, rows = self.loop.now.system, moment.state.pressure, self.table(HistoryRow)
+        system, rows = self.loop.now.system, self.table(HistoryRow)
         depths = moment.state.by_body(system.laws)
+        pressure = comparable_pressure(system, moment.state.pressure, depths)
         force, torque, power = self._friction(moment, conditions)
         in_gap = system.worn_areas * (depths - system.moved)
         volumes = in_gap.sum(axis=1) + system.lost.sum(axis=0)

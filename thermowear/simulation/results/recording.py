@@ -14,6 +14,7 @@ from ...bulk.body_mesh import BodyMesh
 from ...bulk.compiled import compiled_expression
 from ...bulk.heat.varying import straining_rises
 from ...compat import evaluate
+from ...contact.full.full_system import resolved_pressure
 from ...contact.wear.implicit_step import WearRates
 from ...laws.motions import RigidMotion, spatial
 from ...results import (
@@ -132,6 +133,8 @@ def record(
     Wear rates of shape (2, n) are by default those of the pressure at the sliding speed.
     """
     pressure = contact.pressure
+    if contact.shear is None:  # stick-slip bounds it by the pressure at each point
+        pressure = comparable_pressure(system, pressure, worn)
     points = system.contacts.on_body_1
     nothing = np.full(len(pressure), np.nan)
     rates = _local_rates(system, contact) if rates is None else rates
@@ -164,6 +167,25 @@ def record(
         heat_flux_2=fluxes[1],
     )
     return Snapshot(system, contact, motions, bodies, interface)
+
+
+def comparable_pressure(system: System, pressure: np.ndarray, worn: np.ndarray) -> np.ndarray:
+    """Pressure of unworn contact in the pressure space, by whatever method, shape (n,) [Pa].
+
+    With wear, which follows the pressure at each point, that of the method itself.
+
+    Parameters
+    ----------
+    system : System
+    pressure : ndarray, shape (n,)
+        That of the method [Pa].
+    worn : ndarray, shape (..., n)
+        Wear depths [m].
+    """
+    pointwise = system.model.method in ("penalty", "nitsche")
+    if not pointwise or worn.any() or not pressure.any():
+        return pressure
+    return resolved_pressure(system.basis, system.weights, pressure)
 
 
 def _fluid(system: System) -> np.ndarray:

@@ -78,7 +78,7 @@ def summarise(end: Snapshot, time: float) -> dict:
     return size | {
         **state,
         **whole,
-        "max_pressure_Pa": float(end.contact.pressure.max()),
+        "max_pressure_Pa": float(end.interface.pressure.max()),
         "friction_power_W": sum(found["friction_power_W"] for found in interfaces),
         "wear_dissipation_W": sum(found["wear_dissipation_W"] for found in interfaces),
         "contacts": {
@@ -104,7 +104,8 @@ def _of_interface(end: Snapshot, index: int) -> dict:
     )
     friction = friction_of(system, index, at, end.contact.pressure)
     rates = (fields.wear_rate_1 + fields.wear_rate_2)[own]
-    worn = p > 0
+    shown = fields.pressure[own]
+    worn = shown > 0
     depths = np.array([fields.wear_1, fields.wear_2])
     in_gap = (system.worn_areas * (depths - system.moved))[:, own].sum(axis=1)
     volumes = in_gap + system.lost[index]
@@ -117,11 +118,11 @@ def _of_interface(end: Snapshot, index: int) -> dict:
         **({"fluid_force_N": fluid[index]} if index in fluid else {}),
         "friction_force_N": friction.force,
         "friction_torque_Nm": friction.torque,
-        "max_pressure_Pa": float(p.max()),
+        "max_pressure_Pa": float(shown.max()),
         "mean_pressure_Pa": float(w @ p / w[worn].sum()) if worn.any() else 0.0,
-        "min_pressure_Pa": float(p.min()),
+        "min_pressure_Pa": float(shown.min()),
         "contact_area_m2": float(w[worn].sum()),
-        "contact_zones_m": contact_zones(pairing, p),
+        "contact_zones_m": contact_zones(pairing, shown),
         "shape_range_m": float(np.ptp(shape)) if np.isfinite(shape).all() else None,
         "friction_power_W": friction.power,
         **_conducted(end, own),

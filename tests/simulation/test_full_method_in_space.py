@@ -66,9 +66,7 @@ def ball(meshes):
     x, y, z = tagged.points.T
     upper = np.arange(len(z)) < len(UPPER) ** 2 * len(UP)
     bulge = np.where(upper, (x**2 + y**2) / 2 * (1 - z / UP[-1]), 0.0)
-    return replace(
-        meshes, tagged=replace(tagged, points=np.column_stack([x, y, z + bulge]))
-    )
+    return replace(meshes, tagged=replace(tagged, points=np.column_stack([x, y, z + bulge])))
 
 
 def unworn(shape, method):

@@ -48,9 +48,7 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
             "load share at sharp edges",
             meaning="of elements at sharp edges, where the pressure is singular",
         ),
-        from_key(
-            "max_pressure_off_singular_edges_Pa", "largest pressure off sharp edges"
-        ),
+        from_key("max_pressure_off_singular_edges_Pa", "largest pressure off sharp edges"),
         _history["contact_area"],
         from_key("contact_zones_m", meaning="ranges of `s_m` in contact, to a part of an element"),
         _loads["stick_area"],

@@ -31,7 +31,7 @@ from ..search.pairing import Pairing
 
 Basis: TypeAlias = "np.ndarray | sp.csr_array"
 _LEAST_COVERED = 0.4
-"""Fraction of the area of a basis function, on the facets in contact, that must face the other body."""
+"""Fraction of the area of a function, on the facets in contact, that must face the other body."""
 _NEAREST = 8
 """Power of the distance by which shares in farther neighbours fall: nearly the nearest alone."""
 _ZERO_PRESSURE = 1e-9  # of the largest pressure

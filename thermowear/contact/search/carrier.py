@@ -17,7 +17,8 @@ from ..faces.rim import edges_of, rim_edges
 from .common_face import opposite
 
 _BEYOND = 0.2
-"""Distance beyond the rim, relative to that of the rim from the middle of its facet, at which the other face is sought."""
+"""Distance beyond the rim at which the other face is sought, relative to that of the rim from the
+middle of its facet."""
 _CLOSE = 0.5
 """Part of this distance within which rims of both faces coincide."""
 _ALIKE = 1e-6

@@ -91,7 +91,7 @@ class Contacts:
 
     @cached_property
     def facet(self) -> np.ndarray:
-        """Facets of the carrying faces, those of each interface numbered after one another, (n,)."""
+        """Facets of the carrying faces, numbered one interface after the other, shape (n,)."""
         starts = np.cumsum([0, *(len(p.carrying.face.sizes) for p in self.each[:-1])])
         parts = zip(starts, self.each, strict=True)
         return _concatenated([start + p.carrying.facet for start, p in parts])

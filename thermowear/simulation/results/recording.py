@@ -172,7 +172,8 @@ def record(
 def comparable_pressure(system: System, pressure: np.ndarray, worn: np.ndarray) -> np.ndarray:
     """Pressure of unworn contact in the pressure space, by whatever method, shape (n,) [Pa].
 
-    With wear, which follows the pressure at each point, that of the method itself.
+    With wear, which follows the pressure at each point, that of the method itself; likewise with a
+    given penalty, whose penetration is the pressure over it.
 
     Parameters
     ----------
@@ -182,8 +183,9 @@ def comparable_pressure(system: System, pressure: np.ndarray, worn: np.ndarray) 
     worn : ndarray, shape (..., n)
         Wear depths [m].
     """
-    pointwise = system.model.method in ("penalty", "nitsche")
-    if not pointwise or worn.any() or not pressure.any():
+    method = system.model.method
+    own = method not in ("penalty", "nitsche") or system.model.interface.method.penalty is not None
+    if own or worn.any() or not pressure.any():
         return pressure
     return resolved_pressure(system.basis, system.weights, pressure)
 

@@ -137,13 +137,17 @@ def area_vector(mesh: AnyMesh, surface: str) -> tuple[np.ndarray, float]:
 
 
 def projected_area(mesh: AnyMesh, surface: str, turn: np.ndarray = _AS_THEY_ARE) -> float:
-    """Area of a contact face projected along z, exact for its curved facets [m²]."""
+    """Area of a contact face projected along z, exact for its curved facets [m²].
+
+    Of a face all round, as of a shaft, that of the half on one side.
+    """
     mesh = block_with(mesh, surface)
     kind, order = mesh.facet_type, mesh.order
     points, weights = gauss(2 * order, kind)
     tangents = slopes(kind, order, points)
     s, t = np.einsum("qdk,fki->dfqi", tangents, mesh.points[mesh.facets_of(surface)] @ turn.T)
-    return float(abs(np.sum(_cross(s, t) @ weights)))
+    areas = _cross(s, t) @ weights
+    return float(max(areas[areas > 0.0].sum(), -areas[areas < 0.0].sum()))
 
 
 def _triangles(mesh: AnyMesh, surface: str) -> np.ndarray:

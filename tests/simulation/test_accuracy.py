@@ -8,9 +8,20 @@ import pytest
 from thermowear.errors import ComputationError
 from thermowear.results.points import part_of
 from thermowear.simulation import Observer, run
+from thermowear.verification.cases.contact import hertz_in_space
 from thermowear.verification.check import run_starter, starter
 
-from ..benchmarks.error_estimates import LINE, RING, Study, line, worn_shape
+from ..benchmarks.error_estimates import (
+    ELLIPSES,
+    LINE,
+    PAIRS,
+    RING,
+    Study,
+    ellipse,
+    line,
+    on_the_same_cells,
+    worn_shape,
+)
 
 MESHES = [(1, 4), (2, 2), (2, 8), (4, 4)]
 HOT = ("mesh.degree=2", "mesh.elements=4")
@@ -36,8 +47,21 @@ class Notes(Observer):
 def test_pressure_of_a_line_contact(degree, elements):
     """requirement: the true error, of Hertz's closed form, is within a factor 3 of the estimate."""
     mesh = f"mesh.degree={degree}", f"mesh.elements={elements}"
-    ((_, true, estimate),) = Study("cylinder-on-block", LINE + mesh, line()).rows()
+    (_, true, estimate), largest = Study("cylinder-on-block", LINE + mesh, line()).rows()
     assert estimate / 3 < true < 3 * estimate
+    assert largest[0] == "max_pressure"
+    assert largest[1] < 3 * largest[2]
+
+
+def test_the_largest_pressure_does_not_agree_by_chance():
+    """requirement: an unchanged maximum next to pressures that change is no accuracy.
+
+    On this mesh the largest value is 11 % wrong, and changes by 1.5 % with the next degree.
+    """
+    mesh = "mesh.degree=1", "mesh.elements=8"
+    true, estimate = Study("cylinder-on-block", LINE + mesh, line()).rows()[1][1:]
+    assert true > 0.1
+    assert true < 3 * estimate
 
 
 def test_shape_and_temperature_of_a_hot_ring():
@@ -74,15 +98,66 @@ def test_all_methods_are_judged(method):
     """requirement: penalty and Nitsche's method have the estimate, of their own pressure."""
     mesh = "mesh.degree=2", "mesh.elements=4"
     key = f"contact.method={method}"
-    ((_, true, estimate),) = Study("cylinder-on-block", (*LINE, key, *mesh), line()).rows()
+    _, true, estimate = Study("cylinder-on-block", (*LINE, key, *mesh), line()).rows()[0]
     assert estimate / 3 < true < 3 * estimate
 
 
-def test_what_is_not_estimated_is_said():
-    """requirement: null with the reason where there is no estimate."""
-    result = run_starter(
-        "cylinder-on-block", *LINE, 'contact.pressure_degree="lobatto"', "mesh.elements=4"
+IN_TIME = 'analysis={{type="transient", end_time="{} s", tolerance=1e-4}}'
+
+
+@pytest.mark.parametrize("end", [5, 200])
+def test_shape_of_a_running_in(end):
+    """requirement: so is a shape that wears in, long before the steady state and near to it."""
+    words = (*RING, IN_TIME.format(end))
+    fine = (*words, "mesh.degree=4", "mesh.elements=10")
+    errors = worn_shape("annular-punch-running-in", *fine, modes=lambda x: x[:, None] ** 0)
+    mesh = "mesh.degree=1", "mesh.elements=4"
+    _, true, estimate = Study("annular-punch-running-in", words + mesh, errors).rows()[0]
+    assert estimate / 3 < true < 3 * estimate
+
+
+def test_temperatures_in_time():
+    """requirement: so are temperatures while heat is stored in the bodies."""
+    words = (
+        *(*RING, IN_TIME.format(20), "heat.transient=true"),
+        *("bodies.punch.density=7800 kg/m^3", "bodies.punch.specific_heat=460 J/(kg K)"),
     )
+    fine = (*words, "mesh.degree=4", "mesh.elements=10")
+    errors = worn_shape("annular-punch", *fine, modes=lambda x: x[:, None] ** 0)
+    _, true, estimate = Study("annular-punch", words + HOT, errors).rows()[1]
+    assert estimate / 3 < true < 3 * estimate
+
+
+def test_heat_carried_along():
+    """requirement: so are temperatures where the disk carries heat along, on few cells in space."""
+    mesh = ("mesh.elements=6",)
+    fine = (*mesh, "mesh.degree=3")
+    errors = on_the_same_cells("disk-brake-3d", *fine, quantities=("shape", "temperature"))
+    for _, true, estimate in Study("disk-brake-3d", (*mesh, "mesh.degree=1"), errors).rows():
+        assert estimate / 3 < true < 3 * estimate
+
+
+@pytest.mark.parametrize("many", [0, 10**9])
+def test_pressure_in_space(monkeypatch, many):
+    """requirement: so is the pressure of crossed cylinders on own tetrahedra, of many points, too.
+
+    Then the enriched contact is linearised.
+    """
+    monkeypatch.setattr("thermowear.simulation.accuracy.error_estimate._MANY", many)
+    exact = ELLIPSES["cylinders"]
+    result = hertz_in_space.pressed(PAIRS["cylinders"](), exact, (0.8, 0.4))
+    for quantity, true in ellipse(exact, result).items():
+        assert true < 3 * estimates(result)[quantity]
+    assert estimates(result)["pressure"] < 3 * ellipse(exact, result)["pressure"]
+
+
+def test_what_is_not_estimated_is_said():
+    """requirement: null with the reason, and a note, where there is no estimate."""
+    notes = Notes()
+    words = 'contact.pressure_degree="lobatto"', "mesh.elements=4"
+    result = run(starter("cylinder-on-block", *LINE, *words), observer=notes)
+    (note,) = notes.texts
+    assert note.startswith("no estimate of the discretisation error of pressure, because contact.")
     missing = result.summary["error_estimate_missing"]
     assert estimates(result)["pressure"] is None
     assert "lobatto" in missing["pressure"]

@@ -117,6 +117,20 @@ def _comm_of(form) -> MPI.Comm:
     return form.ufl_domains()[0].ufl_cargo().comm
 
 
+def restricted(form: ufl.Form, cells: np.ndarray) -> ufl.Form:
+    """Form integrated over some owned cells, and over those of its facets that are theirs."""
+    domains: dict[str, list] = {"cell": [(1, cells)]}
+    integrals = []
+    for integral in form.integrals():
+        kind = integral.integral_type()
+        if kind not in domains:
+            ((_, entities),) = integral.subdomain_data()
+            facets = entities.reshape(-1, 2)  # cell and local facet
+            domains[kind] = [(1, facets[np.isin(facets[:, 0], cells)].ravel())]
+        integrals.append(integral.reconstruct(subdomain_id=1, subdomain_data=domains[kind]))
+    return ufl.Form(integrals)
+
+
 def assembled(form: fem.Form) -> np.ndarray:
     """Assemble a compiled linear form; owned values. Every rank calls."""
     vector = assemble_vector(form)

@@ -15,8 +15,9 @@ from petsc4py import PETSc
 import numpy as np
 import ufl
 from dolfinx import fem
+from dolfinx.mesh import exterior_facet_indices
 
-from ...compat import evaluate
+from ...compat import evaluate, exterior_facet_domain
 from ..body_mesh import BodyMesh
 from ..compiled import assembled_matrix, compiled_expression
 from ..field import geometry_space, reference_element
@@ -124,29 +125,86 @@ def advection(
     """
     mesh, degree = body.mesh, space.ufl_element().degree
     T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
-    own = set(passage.parts) & set(body.parts)
+    own = _moving(body, passage)
     moving = {part: (conductivities[part], capacities[part]) for part in own}
     k = body.per_part({part: k for part, (k, _) in moving.items()})
     ρc = body.per_part({part: ρc for part, (_, ρc) in moving.items()})
     v = _velocity(mesh, passage)
-    crossing = _transit_time(mesh, v)
-    number = ufl.dot(v, v) * crossing / (2 * degree)  # times the diffusivity
-    number *= body.per_part({part: ρc / k for part, (k, ρc) in moving.items()})
+    number, delay = _upwinding(body, passage, moving, degree)
     peclet = _largest(body, passage, number)
 
     upwind = 0 * δT
-    flow = ρc * ufl.dot(v, ufl.grad(T))
+    carried = carrying(body, kinematics, passage, capacities, degree)(T, δT)
     if peclet > _MAX_RESOLVED_PECLET:  # the stabilisation vanishes with the cell Péclet number
-        delay = crossing / (2 * degree) * ufl.min_value(1, number / 3)
         upwind = delay * ufl.dot(v, ufl.grad(δT))
-        flow = flow * δT + (flow - k * ufl.div(ufl.grad(T))) * upwind
-    else:
-        flow = flow * δT
-    into = ufl.max_value(-ufl.dot(v, ufl.FacetNormal(mesh)), 0)
-    ds = ufl.ds(domain=mesh, metadata={"quadrature_degree": 2 * degree + 2})
-    carried = kinematics.integral(mesh, flow, section_measure(mesh, degree))
-    carried += kinematics.integral(mesh, ρc * into * T * δT, ds)
+        flow = ρc * ufl.dot(v, ufl.grad(T)) - k * ufl.div(ufl.grad(T))
+        carried += kinematics.integral(mesh, flow * upwind, section_measure(mesh, degree))
     return BodyAdvection(assembled_matrix(carried), peclet, upwind)
+
+
+def carrying(
+    body: BodyMesh,
+    kinematics: Kinematics,
+    passage: Passage,
+    capacities: dict[str, float],
+    degree: int,
+):
+    """Bilinear form of the heat carried by a body, as a function of T and δT [W K].
+
+    Zero in a body at rest. Material that enters is at ambient temperature.
+    """
+    mesh = body.mesh
+    ρc = body.per_part({part: capacities[part] for part in _moving(body, passage)})
+    v = _velocity(mesh, passage)
+    into = ufl.max_value(-ufl.dot(v, ufl.FacetNormal(mesh)), 0)
+    dx = section_measure(mesh, degree)
+    mesh.topology.create_connectivity(mesh.topology.dim - 1, mesh.topology.dim)
+    boundary = exterior_facet_domain(mesh, exterior_facet_indices(mesh.topology))
+    ds = ufl.Measure(
+        "ds",
+        domain=mesh,
+        subdomain_data=[(1, boundary)],
+        metadata={"quadrature_degree": 2 * degree + 2},
+    )(1)
+    return lambda T, δT: (
+        kinematics.integral(mesh, ρc * ufl.dot(v, ufl.grad(T)) * δT, dx)
+        + kinematics.integral(mesh, ρc * into * T * δT, ds)
+    )
+
+
+def streamline_diffusion(
+    body: BodyMesh,
+    kinematics: Kinematics,
+    passage: Passage,
+    conductivities: dict[str, float],
+    capacities: dict[str, float],
+    degree: int,
+):
+    """Bilinear form of the diffusion along the motion by upwind test functions, see `advection`."""
+    mesh, own = body.mesh, _moving(body, passage)
+    ρc, v = body.per_part({part: capacities[part] for part in own}), _velocity(mesh, passage)
+    moving = {part: (conductivities[part], capacities[part]) for part in own}
+    _, delay = _upwinding(body, passage, moving, degree)
+    dx = section_measure(mesh, degree)
+    return lambda T, δT: kinematics.integral(
+        mesh, delay * ρc * ufl.dot(v, ufl.grad(T)) * ufl.dot(v, ufl.grad(δT)), dx
+    )
+
+
+def _moving(body: BodyMesh, passage: Passage) -> set[str]:
+    """Parts of a body that move."""
+    return set(passage.parts) & set(body.parts)
+
+
+def _upwinding(
+    body: BodyMesh, passage: Passage, moving: dict[str, tuple[float, float]], degree: int
+):
+    """Cell Péclet number, and the delay of the upwind test functions [s]."""
+    v = _velocity(body.mesh, passage)
+    crossing = _transit_time(body.mesh, v)
+    number = ufl.dot(v, v) * crossing / (2 * degree)  # times the diffusivity
+    number *= body.per_part({part: ρc / k for part, (k, ρc) in moving.items()})
+    return number, crossing / (2 * degree) * ufl.min_value(1, number / 3)
 
 
 def _velocity(mesh, passage: Passage):

@@ -15,7 +15,7 @@ import scipy.sparse as sp
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..direct_solver import GroupSolvers, multiply
+from ..direct_solver import GroupSolvers, eliminate, multiply
 from ..field import without_fixed
 from ..group_solvers import solver_in_group
 from ..joints.joined_solver import JoinedSolver
@@ -28,6 +28,8 @@ from .conduction_solver import ConductionSolver, conduction_solver
 from .even_paths import EvenFactor, EvenPaths
 from .group_conduction import GroupConduction
 
+_RATE_TOLERANCE = 1e-3
+"""Relative residual of rates of temperature, which serve an estimate."""
 _BALANCE_FLOOR = 1e-8
 """Fraction of the flows between neighbouring nodes that serves as scale of the heat balance where
 no other heat flows; rounding errors are 1e-8 of these flows."""
@@ -196,6 +198,24 @@ class Conduction:
         """Nodal stored heat [J], owned rows; its sum over all ranks is that of the bodies."""
         assert self.capacity is not None
         return multiply(self.capacity, rise)
+
+    def storage_rate(self, rise: np.ndarray, heat: np.ndarray) -> np.ndarray:
+        """Rate of a rise by nodal heat that conduction does not carry off [K/s], owned rows.
+
+        Zero where temperatures are prescribed. Every rank calls.
+        """
+        assert self.capacity is not None
+        solver = PETSc.KSP().create(self.spaces.comm)
+        matrix = self.capacity.copy()
+        eliminate(matrix, self.fixed)
+        solver.setOperators(matrix)
+        solver.setType(PETSc.KSP.Type.GMRES)
+        solver.getPC().setType(PETSc.PC.Type.JACOBI)
+        solver.setTolerances(rtol=_RATE_TOLERANCE, max_it=200)
+        x, b = matrix.createVecs()
+        b.setArray(self._free(heat - multiply(self.conductivity, rise)))
+        solver.solve(b, x)
+        return x.getArray().copy()
 
     def balance_scale(self, rise: np.ndarray) -> float:
         """Smallest meaningful scale of the heat balance of a rise (n_owned,) [W].

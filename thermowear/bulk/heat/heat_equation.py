@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from petsc4py import PETSc
@@ -227,6 +227,28 @@ def surface_heat(
         return lambda δT: kinematics.integral(body.mesh, q * δT, measure)
 
     return spaces.loads(map(inflow, bodies.each))
+
+
+def stored_heat_rates(
+    bodies: Bodies,
+    kinematics: Kinematics,
+    spaces: Spaces,
+    materials: dict[str, ThermalMaterial],
+    rates: Sequence[fem.Function],
+) -> np.ndarray:
+    """Nodal rates of the heat stored where temperatures rise at given rates [W], owned rows.
+
+    Every rank calls; `spaces` are those of the test functions, `rates` by body in [K/s].
+    """
+
+    def storing(body: BodyMesh, rate: fem.Function) -> Callable:
+        capacities = {p: materials[p].capacity or 0.0 for p in body.parts if p in materials}
+        degree = rate.function_space.ufl_element().degree
+        density = body.per_part(capacities) * rate
+        measure = section_measure(body.mesh, degree + 1)
+        return lambda δT: kinematics.integral(body.mesh, density * δT, measure)
+
+    return spaces.loads(map(storing, bodies.each, rates))
 
 
 def given_rises(

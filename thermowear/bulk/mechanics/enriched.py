@@ -15,19 +15,20 @@ from petsc4py import PETSc
 
 import numpy as np
 import ufl
-from dolfinx import fem
+from dolfinx import fem, la
 
 from ...parallel import sum_over_ranks
-from ..compiled import assembled, assembled_matrix, compiled
+from ..bodies import Bodies
+from ..body_mesh import BodyMesh
+from ..compiled import assembled, assembled_matrix, compiled, restricted
 from ..direct_solver import DirectSolver, multiply
 from ..spaces import Spaces, block_diagonal
-from .elasticity import supported
 
 _TOLERANCE = 1e-2  # of iterative solutions on the surplus in 3D; a factorisation costs too much
 
 
 class EnrichedProblem:
-    """Symmetric positive definite problem on a space and its surplus.
+    """Positive definite problem on a space and its surplus.
 
     A field is an array of the owned values of the space, followed by those of the surplus.
 
@@ -42,6 +43,11 @@ class EnrichedProblem:
         Solver for corrections on the space alone, for loads (n_owned,).
     fixed : tuple of ndarray of bool
         Masks of prescribed values of the space and of the surplus, which remain unchanged.
+    regular : sequence of sequence of callable, optional
+    symmetric : bool
+        False if a form is not, as that of advection.
+    near : sequence of ndarray of int, optional
+        Owned cells of each body to which the surplus is restricted, see `cells_near`.
     """
 
     def __init__(
@@ -52,34 +58,40 @@ class EnrichedProblem:
         solve: Callable[[np.ndarray], np.ndarray],
         fixed: tuple[np.ndarray, np.ndarray],
         regular: Sequence[Sequence[Callable]] | None = None,
+        symmetric: bool = True,
+        near: Sequence[np.ndarray] | None = None,
     ):
-        self.spaces, self.surplus = spaces, surplus
+        self.spaces, self.surplus, self._symmetric = spaces, surplus, symmetric
         self._comm = spaces.comm
-        self._solve = solve
-        self._free = ~np.concatenate(fixed)
+        self._solve, self._near = solve, near
+        inside = ~fixed[1] if near is None else ~fixed[1] & _inside(surplus, near)
+        self._free = np.concatenate([~fixed[0], inside])
         self._values = [
             (fem.Function(space), fem.Function(more))
             for space, more in zip(spaces.each, surplus.each, strict=True)
         ]
         regular = [() for _ in forms] if regular is None else regular
-        self._actions, self._regular = (
-            [self._compiled(terms, part) for part in (spaces, surplus)]
-            for terms in (forms, regular)
+        self._forces_of, self._regular = (
+            [self._actions(terms, part) for part in (spaces, surplus)] for terms in (forms, regular)
         )
         blocks = []
-        for space, *terms in zip(surplus.each, forms, regular, strict=True):
+        for index, (space, *terms) in enumerate(zip(surplus.each, forms, regular, strict=True)):
             trial, test = ufl.TrialFunction(space), ufl.TestFunction(space)
-            every = [term(trial, test) for some in terms for term in some]
+            every = [self._restricted(term(trial, test), index) for some in terms for term in some]
             blocks.append(assembled_matrix(*every))
-        self._block = _SurplusBlock(block_diagonal(blocks), fixed[1], spaces.dim)
+        self._block = _SurplusBlock(block_diagonal(blocks), inside, spaces.dim, symmetric)
 
-    def _compiled(self, forms: Sequence[Sequence[Callable]], part: Spaces) -> list[list[fem.Form]]:
+    def _actions(self, forms: Sequence[Sequence[Callable]], part: Spaces) -> list[list[fem.Form]]:
         """Compiled actions of terms on the field, tested by the space or its surplus."""
         result = []
-        for terms, space, values in zip(forms, part.each, self._values, strict=True):
-            field, test = values[0] + values[1], ufl.TestFunction(space)
-            result.append([compiled(term(field, test)) for term in terms])
+        for index, (terms, space) in enumerate(zip(forms, part.each, strict=True)):
+            field, test = sum(self._values[index]), ufl.TestFunction(space)
+            result.append([compiled(self._restricted(term(field, test), index)) for term in terms])
         return result
+
+    def _restricted(self, form: ufl.Form, index: int) -> ufl.Form:
+        """Form of a body, integrated over the cells with a surplus and their facets."""
+        return form if self._near is None else restricted(form, self._near[index])
 
     def field(self, values: np.ndarray) -> np.ndarray:
         """Field with given values of the space (n_owned,) and zero surplus."""
@@ -99,16 +111,28 @@ class EnrichedProblem:
         """Load vector of linear forms, one for each body, as functions of the test function."""
         return np.concatenate([self.spaces.loads(forms), self.surplus.loads(forms)])
 
-    def residual(self, field: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """Residual of a field under loads, zero in fixed values."""
+    def residual(self, field: np.ndarray, loads: np.ndarray, more: np.ndarray) -> np.ndarray:
+        """Residual of a solution on the space under loads, zero in fixed values.
+
+        Parameters
+        ----------
+        field : ndarray
+            The solution balances its loads on the space; there, only `more` is left.
+        loads : ndarray
+            Loads on the surplus.
+        more : ndarray
+            Loads on the space that the solution does not know.
+        """
         self.functions(field)
-        forces = np.concatenate([_sum(terms) for terms in self._actions])
-        return np.where(self._free, loads - forces, 0.0)
+        forces = _sum(self._forces_of[1])
+        return np.where(self._free, np.concatenate([more, loads - forces]), 0.0)
 
     def correction(self, residual: np.ndarray) -> np.ndarray:
         """Change of a field by one preconditioned step for a residual. Every rank calls."""
         way, energy = self._improved(residual)
-        return way if energy <= 0.0 else self._product(way, residual) / energy * way
+        if not self._symmetric or energy <= 0.0:
+            return way
+        return self._product(way, residual) / energy * way
 
     def approximate(self, loads: np.ndarray) -> np.ndarray:
         """Approximate solution for loads: the preconditioner, linear and symmetric."""
@@ -138,7 +162,7 @@ class EnrichedProblem:
     def _forces(self, field: np.ndarray, part: int) -> np.ndarray:
         """Forces of a correction on the space (0) or on the surplus (1)."""
         self.functions(field)
-        forces = _sum(self._actions[part])
+        forces = _sum(self._forces_of[part])
         if any(self._regular[part]):
             forces = forces + _sum(self._regular[part])
         count = self.spaces.owned
@@ -154,33 +178,83 @@ def _sum(forms: Sequence[Sequence[fem.Form]]) -> np.ndarray:
     return np.concatenate([np.sum([assembled(t) for t in terms], axis=0) for terms in forms])
 
 
+def cells_near(bodies: Bodies, surfaces: Sequence[str], layers: int) -> list[np.ndarray]:
+    """Owned cells of each body within some layers of cells from surfaces. Every rank calls."""
+    return [_cells_near(body, surfaces, layers) for body in bodies.each]
+
+
+def _cells_near(body: BodyMesh, surfaces: Sequence[str], layers: int) -> np.ndarray:
+    space = fem.functionspace(body.mesh, ("Lagrange", 1))
+    nodes = space.dofmap.list
+    facets = np.concatenate([body.facets(surface) for surface in surfaces])
+    marked = np.zeros(space.dofmap.index_map.size_local + space.dofmap.index_map.num_ghosts, bool)
+    marked[fem.locate_dofs_topological(space, body.mesh.topology.dim - 1, facets)] = True
+    for _ in range(layers):
+        marked = _on_any_rank(space, marked)
+        near = marked[nodes].any(axis=1)
+        marked[nodes[near]] = True
+    return np.flatnonzero(near[: body.n_cells]).astype(np.int32)
+
+
+def _inside(surplus: Spaces, near: Sequence[np.ndarray]) -> np.ndarray:
+    """Mask of owned values whose functions vanish outside some cells. Every rank calls."""
+    masks = []
+    for space, cells in zip(surplus.each, near, strict=True):
+        index_map, mesh = space.dofmap.index_map, space.mesh
+        outside = np.ones(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=bool)
+        outside[cells] = False
+        marked = np.zeros(index_map.size_local + index_map.num_ghosts, dtype=bool)
+        marked[space.dofmap.list[np.flatnonzero(outside)]] = True
+        far = _on_any_rank(space, marked)[: index_map.size_local]
+        masks.append(np.repeat(~far, space.dofmap.index_map_bs))
+    return np.concatenate(masks)
+
+
+def _on_any_rank(space: fem.FunctionSpace, marked: np.ndarray) -> np.ndarray:
+    """Mask of the local nodes that any rank has marked. Every rank calls."""
+    vector = la.vector(space.dofmap.index_map)
+    vector.array[:] = marked
+    vector.scatter_reverse(la.InsertMode.add)
+    vector.scatter_forward()
+    return vector.array > 0.0
+
+
 class _SurplusBlock:
     """Matrix of the bilinear form on the surplus; solved directly in 2D, iteratively in 3D."""
 
-    def __init__(self, matrix: PETSc.Mat, fixed: np.ndarray, dim: int):
-        self._matrix = supported(matrix, fixed)
-        self._factor = DirectSolver(self._matrix, dim=dim) if dim == 2 else None
-        self._iteration = None if dim == 2 else _conjugate_gradients(self._matrix)
+    def __init__(self, matrix: PETSc.Mat, free: np.ndarray, dim: int, symmetric: bool):
+        first, _ = matrix.getOwnershipRange()
+        rows = (first + np.flatnonzero(free)).astype(PETSc.IntType)
+        chosen = PETSc.IS().createGeneral(rows, comm=matrix.comm)
+        self._free, self._matrix = free, matrix.createSubMatrix(chosen, chosen)
+        kind = "definite" if symmetric else "none"
+        self._factor = DirectSolver(self._matrix, kind, dim=dim) if dim == 2 else None
+        self._iteration = None if dim == 2 else _iteration(self._matrix, symmetric)
 
     def solve(self, loads: np.ndarray) -> np.ndarray:
         """Solve for the surplus under loads (n_owned,). Every rank calls."""
+        result = np.zeros(len(loads))
         if self._factor is not None:
-            return self._factor.solve(loads)
+            result[self._free] = self._factor.solve(loads[self._free])
+            return result
         assert self._iteration is not None
         x, b = self._matrix.createVecs()
-        b.setArray(loads)
+        b.setArray(loads[self._free])
         self._iteration.solve(b, x)
-        return x.getArray().copy()
+        result[self._free] = x.getArray()
+        return result
 
     def forces(self, surplus: np.ndarray) -> np.ndarray:
-        """Forces of a surplus that vanishes in fixed values. Every rank calls."""
-        return multiply(self._matrix, surplus)
+        """Forces of a surplus that vanishes in fixed values, zero there. Every rank calls."""
+        result = np.zeros(len(surplus))
+        result[self._free] = multiply(self._matrix, surplus[self._free])
+        return result
 
 
-def _conjugate_gradients(matrix: PETSc.Mat) -> PETSc.KSP:
+def _iteration(matrix: PETSc.Mat, symmetric: bool) -> PETSc.KSP:
     solver = PETSc.KSP().create(matrix.comm)
     solver.setOperators(matrix)
-    solver.setType(PETSc.KSP.Type.CG)
+    solver.setType(PETSc.KSP.Type.CG if symmetric else PETSc.KSP.Type.GMRES)
     solver.getPC().setType(PETSc.PC.Type.SOR)
     solver.setTolerances(rtol=_TOLERANCE, max_it=100)
     return solver

@@ -6,6 +6,7 @@ change with the better discretisation.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -13,9 +14,16 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from ...bulk.heat.heat_equation import conducting, given_rises, transferring
+from ...bulk.heat.advection import carrying, streamline_diffusion
+from ...bulk.heat.heat_equation import (
+    conducting,
+    given_rises,
+    stored_heat_rates,
+    surface_heat,
+    transferring,
+)
 from ...bulk.mechanics.elasticity import fixed_values
-from ...bulk.mechanics.enriched import EnrichedProblem
+from ...bulk.mechanics.enriched import EnrichedProblem, cells_near
 from ...bulk.mechanics.surplus import surplus_spaces
 from ...contact.operators.heat import BaselineResponse
 from ...contact.operators.heat_exchange import InterfaceHeat
@@ -28,7 +36,10 @@ from ..interface.body_state import BodyState
 from ..interface.equilibrium import ContactState
 from ..system.rigid_modes import fluid_pressure, surface_loads
 from ..system.system import System
-from ..system.thermal_system import ThermalSystem, conducting_parts, cooling
+from ..system.thermal_system import ThermalSystem, conducting_parts, cooling, passage
+
+_LAYERS = 2
+"""Layers of cells in space that have a surplus."""
 
 
 @dataclass(frozen=True)
@@ -66,22 +77,28 @@ class EnrichedBodies:
             elastic.spaces,
             surplus,
             [(partial(body.virtual_work, degree=self._degree),) for body in elastic.each],
-            elastic.solve,
+            _solver(system, elastic.solve),
             (elastic.fixed, np.concatenate(held)),
+            near=near_contact(system),
         )
         self._trace = sp.vstack([system.trace, gap_trace(surplus, system.contacts)])
 
     def opening(self, contact: ContactState, state: BodyState, heated: TemperatureChange | None):
         """Change of the gap at the points by the next degree in a state, shape (n,) [m]."""
-        system, problem = self._system, self._problem
-        loads, thermal, before = self._loads(contact), system.thermal, state.temperatures
-        if heated is not None:
-            bodies = zip(system.elastic.each, heated.rises, strict=True)
+        system, problem, thermal = self._system, self._problem, self._system.thermal
+        loads, before = self._loads(contact), state.temperatures
+        more = np.zeros(problem.spaces.owned)
+        if before is not None and thermal is not None:
+            if heated is None:
+                rises = thermal.conduction.spaces.functions(before.rise, "rise")
+            else:
+                rises = heated.rises
+            bodies = zip(system.elastic.each, rises, strict=True)
             works = [partial(b.thermal_work, rise, degree=self._degree) for b, rise in bodies]
-            loads = loads + problem.loads(works)
-        elif before is not None and thermal is not None:
-            loads[: problem.spaces.owned] += thermal.forces(before.rise)
-        residual = problem.residual(problem.field(state.displacement), loads)
+            loads = loads + problem.surplus.loads(works)
+            if heated is not None:
+                more = problem.spaces.loads(works) - thermal.forces(before.rise)
+        residual = problem.residual(problem.field(state.displacement), loads, more)
         return self._gap(problem.correction(residual))
 
     def answer(self, pressure: np.ndarray) -> np.ndarray:
@@ -93,22 +110,34 @@ class EnrichedBodies:
         return sum_over_ranks(self._system.comm, self._trace.T @ field)
 
     def _loads(self, contact: ContactState) -> np.ndarray:
-        """Nodal loads of the contact, fluid and surface loads in the enriched space."""
+        """Loads of the contact, fluid and surface loads on the surplus."""
         system, problem = self._system, self._problem
         traction = contact.traction(system.with_friction(contact.conditions.friction))
         fluid = fluid_pressure(system.model, system.contacts)
         if fluid is not None:
             traction = traction + fluid[:, None] * system.contacts.normals
-        loads = np.concatenate(
-            [
-                vector_trace(space, system.contacts, traction) @ system.weights
-                for space in (problem.spaces, problem.surplus)
-            ]
-        )
+        loads = vector_trace(problem.surplus, system.contacts, traction) @ system.weights
         for holder in system.model.holders:
             for works in surface_loads(holder, system.elastic):
-                loads = loads + problem.loads(works)
+                loads = loads + problem.surplus.loads(works)
         return loads
+
+
+def _solver(system: System, solve: Callable) -> Callable[[np.ndarray], np.ndarray]:
+    """Solver for corrections on the space; none where each takes as long as that of the state."""
+    return np.zeros_like if system.choice.iterative else solve
+
+
+def near_contact(system: System) -> list[np.ndarray] | None:
+    """Cells at the contacts, to which the next degree is restricted in space; None in a section.
+
+    There it would cost more than the solution. Errors elsewhere reach the contact as a change that
+    varies little along it.
+    """
+    if system.bodies.dim == 2:
+        return None
+    faces = [name for interface in system.model.interfaces for name in interface.faces]
+    return cells_near(system.bodies, faces, _LAYERS)
 
 
 def temperature_change(
@@ -117,20 +146,28 @@ def temperature_change(
     thermal: ThermalSystem,
     temperatures: TemperatureField,
     conductance: np.ndarray,
+    time: float,
 ) -> TemperatureChange:
-    """Change of steady temperatures by the next degree for a given friction heat; collective."""
+    """Change of temperatures by the next degree for a given friction heat; collective.
+
+    Of temperatures that change in time, the change that steady conduction has for the rate of heat
+    storage of the solution: the elliptic reconstruction of Makridakis and Nochetto (SIAM J. Numer.
+    Anal. 41 (2003) 1585).
+    """
     conduction, face = thermal.conduction, thermal.face
-    assert isinstance(face, InterfaceHeat)
     problem = _conducting(system, heat, thermal)
     details = face_traces(problem.surplus, system.contacts)
     traces = [sp.vstack(both) for both in zip(face.traces, details, strict=True)]
-    fluxes = zip(traces, temperatures.faces.flux, strict=True)
-    loads = np.sum([trace @ (face.weights * flux) for trace, flux in fluxes], axis=0)
-    nodal = loads[: conduction.spaces.owned]
-    nodal += conduction.joint_heat(temperatures.rise, nodal)
-    before = problem.field(temperatures.rise)
-    change = problem.correction(problem.residual(before, loads))
+    fluxes = zip(details, temperatures.faces.flux, strict=True)
+    loads = sum(trace @ (face.weights * flux) for trace, flux in fluxes)
+    loads = loads + _other_heat(system, heat, thermal, problem, temperatures, time)
+    before, count = problem.field(temperatures.rise), problem.spaces.owned
+    residual = problem.residual(before, loads, np.zeros(count))
+    change = problem.correction(residual)
     uncoupled = np.array([sum_over_ranks(system.comm, trace.T @ change) for trace in traces])
+    if heat.transient or system.choice.iterative or not isinstance(face, InterfaceHeat):
+        rises = _levelled(uncoupled, 1 / np.array(face.layers), conductance)
+        return TemperatureChange(rises, problem.functions(before + change))
     # the nodal space cannot represent the response to a flux that levels finer details
     weighted = scaled(face.weights, face.basis)
     mass = dense(weighted.T @ face.basis)
@@ -138,20 +175,51 @@ def temperature_change(
     exchange = face.exchange(conductance)
     none = np.zeros(len(face.weights))
     coupled = exchange.state(none, BaselineResponse((resolved[:, 0], resolved[:, 1])))
-    change[: conduction.spaces.owned] += conduction.respond(face.nodal_heat(coupled, bath=True))
-    finer = _levelled(uncoupled - resolved.T, face, conductance)
+    change[:count] += conduction.respond(face.nodal_heat(coupled, bath=True))
+    finer = _levelled(uncoupled - resolved.T, _own_resistances(face), conductance)
     return TemperatureChange(np.array(coupled.rise) + finer, problem.functions(before + change))
 
 
-def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -> np.ndarray:
-    """Rises of both faces (2, n) below the nodal resolution after their exchange of heat [K].
+def _other_heat(
+    system: System,
+    heat: Heat,
+    thermal: ThermalSystem,
+    problem: EnrichedProblem,
+    temperatures: TemperatureField,
+    time: float,
+) -> np.ndarray:
+    """Heat to the surplus from surfaces, surroundings and storage, owned values [W]."""
+    model, kinematics, spaces = system.model, system.elastic.kinematics, problem.surplus
+    load = thermal.loads.at(time)
+    loads = np.zeros(spaces.owned)
+    for surface, flux in thermal.loads.fluxes.items():
+        loads += surface_heat(system.bodies, kinematics, spaces, surface, flux)
+    for surface, coefficient in cooling(model, heat).items():
+        if load.ambient:
+            flux = coefficient * load.ambient
+            loads += surface_heat(system.bodies, kinematics, spaces, surface, flux)
+    if heat.transient:
+        nodal = thermal.face.nodal_heat(temperatures.faces, bath=False) + load.heat
+        rate = thermal.conduction.storage_rate(temperatures.rise, nodal)
+        rates = thermal.conduction.spaces.functions(rate, "rate")
+        parts = conducting_parts(model)
+        loads -= stored_heat_rates(system.bodies, kinematics, spaces, parts, rates)
+    return loads
 
-    Approximation: each point has a resistance of its own in either body, its rise per own flux.
-    """
-    own = np.zeros_like(rises)
+
+def _own_resistances(face: InterfaceHeat) -> np.ndarray:
+    """Rise of each face at each point per own flux there, shape (2, n) [m² K/W]."""
+    own = np.zeros((2, len(face.weights)))
     for nodes, response in zip(face.nodes, face.response, strict=True):
         own += [values.multiply(values @ response).sum(axis=1) for values in nodes.values]
-    own = np.abs(face.weights * own)
+    return np.abs(face.weights * own)
+
+
+def _levelled(rises: np.ndarray, own: np.ndarray, conductance: np.ndarray) -> np.ndarray:
+    """Rises of both faces (2, n) below the nodal resolution after their exchange of heat [K].
+
+    Approximation: each point has a resistance of its own in either body, shape (2, n) [m² K/W].
+    """
     with np.errstate(divide="ignore"):
         flux = (rises[1] - rises[0]) / (own.sum(axis=0) + 1 / conductance)
     return rises + own * flux * np.array([[1.0], [-1.0]])
@@ -160,24 +228,44 @@ def _levelled(rises: np.ndarray, face: InterfaceHeat, conductance: np.ndarray) -
 def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedProblem:
     """Conduction with its surplus space; corrections transfer heat to a bath at both faces."""
     conduction, model, bodies = thermal.conduction, system.model, system.bodies
-    degree, kinematics = model.discretisation.degree, system.elastic.kinematics
-    conductivities = {part: m.conductivity for part, m in conducting_parts(model).items()}
-    surplus, given_h = surplus_spaces(bodies, degree), cooling(model, heat)
-    terms = [
-        [
-            conducting(body, kinematics, conductivities, degree + 1),
-            *transferring(body, kinematics, given_h),
-        ]
-        for body in bodies.each
-    ]
+    degree, kinematics = model.discretisation.degree + 1, system.elastic.kinematics
+    parts, passing = conducting_parts(model), passage(model, heat)
+    conductivities = {part: m.conductivity for part, m in parts.items()}
+    capacities = {part: m.capacity for part, m in parts.items() if m.capacity is not None}
+    surplus, given_h = surplus_spaces(bodies, degree - 1), cooling(model, heat)
     shifts = {
         name: float(shift[points.start])
         for interface, points in zip(model.interfaces, system.contacts.ranges, strict=True)
         for name, shift in zip(interface.faces, thermal.face.shifts, strict=True)
     }
-    bath = [transferring(body, kinematics, shifts) for body in bodies.each]
     left_out = *heat.temperature, *conduction.joints.surfaces
     given, _ = given_rises(bodies, surplus, dict.fromkeys(left_out, 0.0), None)
+    terms, only_corrections = [], []
+    for index, body in enumerate(bodies.each):
+        own = [
+            conducting(body, kinematics, conductivities, degree),
+            *transferring(body, kinematics, given_h),
+        ]
+        corrected = transferring(body, kinematics, shifts)
+        if passing is not None and set(passing.parts) & set(body.parts):
+            if passing.spread:  # the temperature along its paths is even, and has no details
+                given[surplus.rows(index)] = True
+            else:
+                own.append(carrying(body, kinematics, passing, capacities, degree))
+                corrected.append(
+                    streamline_diffusion(
+                        body, kinematics, passing, conductivities, capacities, degree
+                    )
+                )
+        terms.append(own)
+        only_corrections.append(corrected)
     return EnrichedProblem(
-        conduction.spaces, surplus, terms, conduction.respond, (conduction.fixed, given), bath
+        conduction.spaces,
+        surplus,
+        terms,
+        _solver(system, conduction.respond),
+        (conduction.fixed, given),
+        only_corrections,
+        symmetric=passing is None or passing.spread,
+        near=near_contact(system),
     )

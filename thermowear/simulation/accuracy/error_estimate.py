@@ -3,8 +3,9 @@
 * Pressure: mean of ``|p - p⁺|`` over the contact, relative to the mean of ``p``. It exists for any
   pressure, also for edge singularities, where no largest value converges. The change of the largest
   value is reported separately.
-* Shape: largest change of the elastic opening in the contact area, up to a rigid motion of the
-  holder, relative to the range of the shape.
+* Shape: largest change in the contact area, up to a rigid motion of the holder, relative to the
+  range of the shape: in a steady state of the elastic opening, in time of the wear by the change of
+  the pressure.
 * Temperature: largest change at the faces, relative to the largest rise there.
 
 The next degree finds most of the error, higher degrees the rest: if each degree reduces the error
@@ -22,13 +23,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.search.pairing import pair
-from ...contact.solvers.enriched_pressure import enriched_pressure
+from ...contact.solvers.enriched_pressure import enriched_pressure, linearised_pressure
 from ...errors import CaseError, ComputationError
 from ...model.analyses import Analysis
 from ...results import InterfaceFields
-from ..interface.equilibrium import ContactState
 from ..interface.steady import principle
 from ..results.recording import Snapshot
 from ..system.building import sliding_contact
@@ -39,13 +38,22 @@ from .enriched_bodies import EnrichedBodies, TemperatureChange, temperature_chan
 _FOLLOWING = 1.5
 """Ratio of the change by all higher degrees to that by the next one: 1 + 1/3 + 1/9 …"""
 WORTH_A_WARNING = 0.05
-_PART = 0.2
-"""Part of the available memory that the estimate may take in space."""
+_MANY = 10_000_000
+"""Product of the numbers of points and functions from which the enriched contact is linearised."""
+_HIGH = 0.7
+"""Part of the largest pressure above which pressures are large."""
+_LEAST = 0.2
+"""Least error of the largest pressure, relative to the mean error."""
 _FLAT = 1e-9
 """Range of a shape at rounding level, relative to the elastic deflection."""
 
 
 _NAMES = {"max_pressure": "largest pressure"}
+_ISOTHERMAL = "isothermal"
+_AMBIENT = "no temperature differs from the ambient one"
+_OPEN = "nothing presses"
+_UNWORN = "the faces have no shape by wear"
+_NOTHING_TO_ESTIMATE = {_ISOTHERMAL, _AMBIENT, _OPEN, _UNWORN}
 
 
 @dataclass(frozen=True)
@@ -68,82 +76,86 @@ class ErrorEstimates:
         found = {f"{q}_error_estimate_relative": error for q, error in self.errors.items()}
         return found | {"error_estimate_missing": self.missing}
 
-    def warning(self) -> str | None:
-        """Warning that lists the errors above `WORTH_A_WARNING`; None without any."""
+    def notes(self) -> list[str]:
+        """Notes on errors above `WORTH_A_WARNING`, and on those that are not estimated."""
+        notes = []
         above = {q: e for q, e in self.errors.items() if e and e > WORTH_A_WARNING}
-        if not above:
-            return None
-        large = ", ".join(f"{_NAMES.get(q, q)} {100 * e:.2g} %" for q, e in above.items())
-        return (
-            f"estimated discretisation error above 5 %: {large}; use more mesh.elements, "
-            "for CAD parts a smaller mesh.contact_size, or a higher mesh.degree, and compare by "
-            "`run --accuracy`"
-        )
+        if above:
+            large = ", ".join(f"{_NAMES.get(q, q)} {100 * e:.2g} %" for q, e in above.items())
+            notes.append(
+                f"estimated discretisation error above 5 %: {large}; use more mesh.elements, "
+                "for CAD parts a smaller mesh.contact_size, or a higher mesh.degree, and compare "
+                "by `run --accuracy`"
+            )
+        reasons = {q: why for q, why in self.missing.items() if why not in _NOTHING_TO_ESTIMATE}
+        for reason in dict.fromkeys(reasons.values()):
+            quantities = " and ".join(q for q, why in reasons.items() if why == reason)
+            notes.append(
+                f"no estimate of the discretisation error of {quantities}, because {reason}; "
+                "compare by `run --accuracy`"
+            )
+        return notes
 
 
-def estimate_errors(analysis: Analysis, end: Snapshot) -> ErrorEstimates:
-    """Estimate the errors at the end of an analysis. Every rank calls."""
+def estimate_errors(analysis: Analysis, end: Snapshot, time: float) -> ErrorEstimates:
+    """Estimate the errors at the end of an analysis, at a time [s]. Every rank calls."""
     system, steady = end.system, analysis.type == "steady"
     missing: dict[str, str] = {}
     errors: dict[str, float | None] = dict.fromkeys(
         ("pressure", "max_pressure", "shape", "temperature")
     )
-    heated, why = _temperature_change(end)
+    heated, why = _temperature_change(end, time)
     if heated is not None:
         errors["temperature"] = _of_temperature(end, heated)
     if errors["temperature"] is None:
-        missing["temperature"] = why or "no temperature differs from the ambient one"
+        missing["temperature"] = why or _AMBIENT
     bodies = EnrichedBodies(system)
     opened = bodies.opening(end.contact, end.bodies, heated)
-    if system.thermal is not None and heated is None:
-        missing["shape"] = f"temperature: {why}"
-    else:
-        errors["shape"] = _of_shape(end, opened, steady)
-        if errors["shape"] is None:
-            missing["shape"] = "the faces have no shape by wear"
     if not end.interface.pressure.any():
-        missing["pressure"] = "nothing presses"
+        missing["pressure"] = missing["shape"] = _OPEN
         return ErrorEstimates(errors, missing)
-    if not steady and _enriched_memory(system) > _PART * system.choice.available:
-        missing["pressure"] = "not estimated for this many contact points"
-        return ErrorEstimates(errors, missing)
+    change = opened if steady else None
     try:
         if steady:
-            enriched = _finer_principle(system, end.contact)
+            enriched = _coarser_principle(end)
         else:
             enriched = _enriched_pressure(end, bodies, opened)
-        mean, largest = _of_pressure(system, end.interface.pressure, enriched)
-        errors["pressure"] = max(mean, _of_edges(system, end.interface))
-        errors["max_pressure"] = largest
+            change = _wear_change(end, enriched)
+        errors["pressure"], errors["max_pressure"] = _of_pressure(end, enriched)
     except (CaseError, ComputationError, np.linalg.LinAlgError) as error:
         missing["pressure"] = str(error)
+    shaped = _shaped(end, steady)
+    if not shaped:
+        missing["shape"] = _UNWORN
+    elif system.thermal is not None and heated is None:
+        missing["shape"] = str(why)
+    elif change is None:
+        missing["shape"] = missing["pressure"]
+    else:
+        errors["shape"] = _of_shape(end, change, shaped)
     return ErrorEstimates(errors, missing)
 
 
-def _enriched_memory(system: System) -> float:
-    """Memory of `enriched_pressure`, whose finer space has four times the functions [bytes]."""
-    points, functions = system.basis.shape
-    return 8.0 * points * functions * (2 + 3 * 4)
+def _wear_change(end: Snapshot, enriched: np.ndarray) -> np.ndarray:
+    """Change of the wear depth by that of the pressure during the whole wear, (n,) [m].
+
+    Wear levels the change of the elastic gap where it is large, see `_wear_per_pressure`.
+    """
+    return _wear_per_pressure(end.system, end.interface) * (enriched - end.interface.pressure)
 
 
-def _temperature_change(end: Snapshot) -> tuple[TemperatureChange | None, str | None]:
+def _temperature_change(end: Snapshot, time: float) -> tuple[TemperatureChange | None, str | None]:
     """Change of the temperatures by the next degree, or the reason why there is no estimate."""
     thermal, heat = end.system.thermal, end.system.model.heat
     found = end.bodies.temperatures
     if thermal is None or heat is None or found is None:
-        return None, "isothermal"
-    if heat.transient:
-        return None, "not estimated where temperatures are followed in time"
-    if heat.flux or heat.power:
-        return None, "not estimated where heat is given on surfaces"
+        return None, _ISOTHERMAL
+    if heat.transient and thermal.conduction.joints.count:
+        return None, "temperatures of glued bodies are followed in time"
     if thermal.varies:
-        return None, "not estimated where conductivity or expansion change with temperature"
-    if heat.advection != "none":
-        return None, "not estimated where a body carries heat along"
-    if isinstance(thermal.face, CoupledHeat):
-        return None, "not estimated for this many contact points"
+        return None, "conductivity or expansion change with temperature"
     conductance = end.contact.conditions.conductance
-    return temperature_change(end.system, heat, thermal, found, conductance), None
+    return temperature_change(end.system, heat, thermal, found, conductance, time), None
 
 
 def _of_temperature(end: Snapshot, heated: TemperatureChange) -> float | None:
@@ -152,21 +164,26 @@ def _of_temperature(end: Snapshot, heated: TemperatureChange) -> float | None:
     return _FOLLOWING * float(np.abs(heated.faces).max()) / largest if largest > 0 else None
 
 
-def _of_shape(end: Snapshot, opened: np.ndarray, steady: bool) -> float | None:
+def _shaped(end: Snapshot, steady: bool) -> list[slice]:
+    """Ranges of the points of interfaces that are in contact with a shape by wear."""
     system, interface = end.system, end.interface
-    worn = np.any([interface.wear_1, interface.wear_2]) or steady
-    pressing = interface.pressure > 0
+    if not (steady or np.any([interface.wear_1, interface.wear_2])):
+        return []
     flat = _FLAT * np.abs(end.bodies.opening).max(initial=0.0)
-    shaped = [points for points in system.contacts.ranges if np.ptp(interface.shape[points]) > flat]
-    if not worn or not shaped or not pressing.any():
-        return None
-    modes, change = system.holder.modes[pressing], opened[pressing]
+    return [points for points in system.contacts.ranges if np.ptp(interface.shape[points]) > flat]
+
+
+def _of_shape(end: Snapshot, change: np.ndarray, shaped: list[slice]) -> float:
+    """Error of the shape from its change in contact, up to motions of the holders."""
+    system, interface = end.system, end.interface
+    pressing = interface.pressure > 0
+    modes, own = system.holder.modes[pressing], change[pressing]
     roots = np.sqrt(system.weights[pressing])
-    motion = np.linalg.lstsq(modes * roots[:, None], change * roots, rcond=None)[0]
-    left = np.zeros(len(opened))
-    left[pressing] = np.abs(change - modes @ motion)
-    own = [left[points].max() / np.ptp(interface.shape[points]) for points in shaped]
-    return _FOLLOWING * float(max(own))
+    motion = np.linalg.lstsq(modes * roots[:, None], own * roots, rcond=None)[0]
+    left = np.zeros(len(change))
+    left[pressing] = np.abs(own - modes @ motion)
+    each = [left[points].max() / np.ptp(interface.shape[points]) for points in shaped]
+    return _FOLLOWING * float(max(each))
 
 
 def _of_edges(system: System, interface: InterfaceFields) -> float:
@@ -187,11 +204,20 @@ def _of_edges(system: System, interface: InterfaceFields) -> float:
     return float(pressure[last] @ largest[facet[last]] / 2 / (weights @ pressure))
 
 
-def _of_pressure(system: System, pressure: np.ndarray, enriched: np.ndarray) -> tuple[float, float]:
+def _of_pressure(end: Snapshot, enriched: np.ndarray) -> tuple[float, float]:
+    """Errors of the pressure in the mean, and of its largest value.
+
+    The largest value may agree by chance: the change of all large pressures counts, too, by the
+    geometric mean of both, and at least a part of the mean error.
+    """
+    system, pressure = end.system, end.interface.pressure
     total, largest = float(system.weights @ pressure), float(pressure.max())
-    change = float(system.weights @ np.abs(enriched - pressure))
-    peak = abs(float(enriched.max()) - largest)
-    return _FOLLOWING * change / total, _FOLLOWING * peak / largest
+    change, top = np.abs(enriched - pressure), max(largest, float(enriched.max()))
+    mean = _FOLLOWING * float(system.weights @ change) / total
+    mean = max(mean, _of_edges(system, end.interface))
+    high = float(change[np.maximum(pressure, enriched) > _HIGH * top].max())
+    peak = np.sqrt(abs(float(enriched.max()) - largest) * high)
+    return mean, max(_LEAST * mean, _FOLLOWING * float(peak) / largest)
 
 
 def _enriched_pressure(end: Snapshot, bodies: EnrichedBodies, opened: np.ndarray) -> np.ndarray:
@@ -199,8 +225,10 @@ def _enriched_pressure(end: Snapshot, bodies: EnrichedBodies, opened: np.ndarray
     system, interface = end.system, end.interface
     model = system.model
     if any(one.pressure_degree == "lobatto" for one in model.interfaces):
-        raise ComputationError('not estimated for contact.pressure_degree = "lobatto"')
-    return enriched_pressure(
+        raise ComputationError('contact.pressure_degree = "lobatto" has no richer pressures')
+    points, functions = system.basis.shape
+    many = points * functions > _MANY
+    return (linearised_pressure if many else enriched_pressure)(
         system.contacts,
         system.influence,
         [model.pressure_degree(one) + 1 for one in model.interfaces],
@@ -228,22 +256,30 @@ def _wear_per_pressure(system: System, interface: InterfaceFields) -> np.ndarray
     return np.where(least[facet] > 0.0, least[facet], np.maximum(depth, 0.0)) / mean
 
 
-def _finer_principle(system: System, contact: ContactState) -> np.ndarray:
-    """Steady pressure by a finer quadrature, the only discretisation error of the principle."""
+def _coarser_principle(end: Snapshot) -> np.ndarray:
+    """Steady pressure by a coarser quadrature, the only discretisation error of the principle."""
+    system, contact = end.system, end.contact
     if system.worn is not None:
-        raise ComputationError("not estimated on moved meshes")
+        raise ComputationError("the meshes were moved to the worn faces")
     if any("T" in law.variables for law in system.laws.values()):
-        raise ComputationError("not estimated where wear depends on the temperature")
-    coarse, fine = (
-        principle(each, contact.conditions.load, speed=each.speed, friction=each.friction)
-        for each in (system, _finer(system))
+        raise ComputationError("wear depends on the temperature")
+    conditions = contact.conditions
+
+    def velocity(each: System) -> np.ndarray:
+        found = principle(each, conditions.load, speed=each.speed, friction=each.friction)
+        return system.holder.modes @ found.velocity
+
+    nominal = (
+        np.array_equal(conditions.friction, system.friction)
+        and np.array_equal(conditions.speed, system.speed)
+        and bool(np.all(conditions.wear == 1.0))
     )
-    velocity = system.holder.modes @ coarse.velocity
-    change = system.holder.modes @ fine.velocity - velocity
+    known = end.wear_velocity if nominal else None
+    own = velocity(system) if known is None else system.holder.modes @ known
     pressure = contact.pressure
-    exponent = _exponent(system, pressure, contact.conditions)
-    moving = np.where(pressure > 0, velocity, 1.0)
-    return pressure * (1 + change / (exponent * moving))
+    exponent = _exponent(system, pressure, conditions)
+    moving = np.where(pressure > 0, own, 1.0)
+    return pressure * (1 + (velocity(_coarser(system)) - own) / (exponent * moving))
 
 
 def _exponent(system: System, pressure: np.ndarray, conditions: InterfaceConditions) -> float:
@@ -257,17 +293,17 @@ def _exponent(system: System, pressure: np.ndarray, conditions: InterfaceConditi
     return least
 
 
-def _finer(system: System) -> System:
-    """System with more contact points, for the steady-state principle only."""
+def _coarser(system: System) -> System:
+    """System with fewer contact points, for the steady-state principle only."""
     model, kinematics = system.model, system.elastic.kinematics
-    finer = []
-    for interface, coarse in zip(model.interfaces, system.contacts.each, strict=True):
-        face_1, face_2 = (side.face for side in coarse.sides)
+    coarser = []
+    for interface, fine in zip(model.interfaces, system.contacts.each, strict=True):
+        face_1, face_2 = (side.face for side in fine.sides)
         lobatto = interface.pressure_degree == "lobatto"
-        order = model.discretisation.degree + (2 if lobatto else 3)
-        given = face_1, face_2, kinematics, order
-        finer.append(pair(*given, refine=not lobatto, carrier=coarse.carrier))
+        order = model.discretisation.degree + (0 if lobatto else 1)
+        given = face_1, face_2, kinematics, max(order, 2)
+        coarser.append(pair(*given, refine=not lobatto, carrier=fine.carrier))
     driven = system.holder.rigid_modes
-    contacts = replace(system.contacts, each=tuple(finer))
+    contacts = replace(system.contacts, each=tuple(coarser))
     contact = sliding_contact(model, kinematics, contacts, driven)
     return replace(system, contacts=contacts, **contact)

@@ -207,21 +207,13 @@ def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Obse
     """Add discretisation error estimates to the summary; note large ones. Every rank calls."""
     if result.stopped is not None:
         return result
-    if end.system.choice.iterative:
-        why = (
-            'not estimated where bodies are solved by multigrid (it is with mesh.solver = "direct")'
-        )
-        observer.note(f"the discretisation error is {why}")
-        missing = {"error_estimate_missing": {"all": why}}
-        return replace(result, summary=result.summary | missing)
     try:
-        estimates = estimate_errors(analysis, end)
+        estimates = estimate_errors(analysis, end, result.summary.get("time_s", 0.0))
     except (CaseError, ComputationError, LinAlgError) as error:  # the result is valid without it
         missing = {"error_estimate_missing": {"all": str(error)}}
         return replace(result, summary=result.summary | missing)
-    warning = estimates.warning()
-    if warning is not None:
-        observer.note(warning)
+    for note in estimates.notes():
+        observer.note(note)
     return replace(result, summary=result.summary | estimates.summary())
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -72,7 +73,7 @@ def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
         **wear_velocity(system, wear.velocity),
         "wear_dissipation_W": wear.dissipation,
     }
-    return conclude(end, extra)
+    return conclude(replace(end, wear_velocity=wear.velocity), extra)
 
 
 def _require_positions(system: System, pressing: np.ndarray) -> None:

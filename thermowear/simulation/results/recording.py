@@ -59,6 +59,8 @@ class Snapshot:
         Worn track of a reciprocating analysis.
     removed : ndarray or None, shape (n_wearing, n_interfaces)
         Volumes worn off by the rates in time, see `InterfaceState` [m³].
+    wear_velocity : ndarray or None, shape (k,)
+        Rigid-body wear velocity of the free modes of the holders in a steady state [m/s, rad/s].
     """
 
     system: System
@@ -69,6 +71,7 @@ class Snapshot:
     friction: FrictionInterface | None = None
     track: WornTrack | None = None
     removed: np.ndarray | None = None
+    wear_velocity: np.ndarray | None = None
 
     @property
     def displacement(self) -> np.ndarray:

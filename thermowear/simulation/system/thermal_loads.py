@@ -58,12 +58,15 @@ class ThermalLoads:
         empty if all are constant.
     surroundings : tuple or None
         Temperature history of the surroundings, and nodal heat (n_owned,) per rise of it [W/K].
+    fluxes : dict of str to float
+        Given heat into the bodies by surface [W/m²].
     """
 
     base: ThermalLoad
     reference: float
     given: dict[str, tuple[TimeFunction | float, np.ndarray]]
     surroundings: tuple[TimeFunction, np.ndarray] | None
+    fluxes: dict[str, float]
 
     @cached_property
     def constant(self) -> ThermalLoad | None:
@@ -96,8 +99,9 @@ def thermal_loads(
     total = np.zeros(len(conduction.fixed))
     areas = {s: surface_area(bodies, kinematics, s) for s in (*heat.flux, *heat.power)}
     powers = {s: q * model.ring(s) * areas[s] for s, q in heat.flux.items()} | dict(heat.power)
-    for surface, power in powers.items():
-        total += surface_heat(bodies, kinematics, spaces, surface, power / areas[surface])
+    fluxes = {surface: power / areas[surface] for surface, power in powers.items()}
+    for surface, flux in fluxes.items():
+        total += surface_heat(bodies, kinematics, spaces, surface, flux)
     given, surroundings = {}, None
     if any(isinstance(T, TimeFunction) for T in heat.temperature.values()):
         for surface, T in heat.temperature.items():
@@ -106,4 +110,4 @@ def thermal_loads(
     if heat.ambient_history is not None:
         surroundings = heat.ambient_history, conduction.per_ambient()
     constant = ThermalLoad(total, sum(powers.values()), sum(map(abs, powers.values())))
-    return ThermalLoads(constant, heat.ambient, given, surroundings)
+    return ThermalLoads(constant, heat.ambient, given, surroundings, fluxes)

@@ -139,7 +139,7 @@ def thermal_system(
             cooling(model, heat),
             given,
             bath,
-            _passage(model, heat),
+            passage(model, heat),
             choice,
             joints=thermal_joints(spaces, glued, conductances),
         )
@@ -229,7 +229,7 @@ def _conductivities(model: Model, heat: Heat, materials: dict[str, ThermalMateri
     ]
 
 
-def _passage(model: Model, heat: Heat) -> Passage | None:
+def passage(model: Model, heat: Heat) -> Passage | None:
     """Motion of the body that passes the others, for advection; None where conduction neglects it.
 
     Raises

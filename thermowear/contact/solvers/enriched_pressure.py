@@ -113,9 +113,9 @@ def linearised_pressure(
         weak = weighted.T @ opened(change) - modes @ motion
         return np.concatenate([weak[active], force_modes[active].T @ change * scale])
 
-    scale = np.linalg.norm(weighted.T @ opened(coefficients[active])) / max(
-        np.linalg.norm(modes) * np.linalg.norm(coefficients), np.finfo(float).tiny
-    )
+    opening = float(np.linalg.norm(weighted.T @ opened(coefficients[active])))
+    closed = float(np.linalg.norm(modes) * np.linalg.norm(coefficients))
+    scale = opening / (closed or 1.0)  # columns of equal size
     operator = linalg.LinearOperator((count + modes.shape[1],) * 2, matvec=product)
     loads = np.concatenate([-(weighted.T @ gap)[active], np.zeros(modes.shape[1])])
     found, _ = linalg.gmres(operator, loads, rtol=_TOLERANCE, restart=_ITERATIONS, maxiter=1)

@@ -19,7 +19,8 @@ class CaseModel:
     """Predictions of all measurements of a case, see `inference.forward.ForwardModel`.
 
     Predictions at neighbouring parameters take the time steps of the one that they are compared
-    with, so that finite differences are smooth, and may be computed side by side.
+    with, so that finite differences are smooth, and may be computed side by side. They are in the
+    order of the values of all measurements, whatever experiments these belong to.
 
     Parameters
     ----------
@@ -44,6 +45,7 @@ class CaseModel:
     ):
         self._table, self._experiments, self._runner = table, list(experiments), runner
         self._known: dict[str, list[Prediction]] = {}
+        self._order = _order_of(experiments)
         self._follows = all(one.smooth for one in experiments)
         self.runs = 0
         if not all(one.located for one in experiments):
@@ -64,21 +66,21 @@ class CaseModel:
 
         NaN where a run fails; see `failure`.
         """
-        return np.concatenate([one.values for one in self._at(values)])
+        return self._joined(self._at(values))
 
     def neighbours(self, values: np.ndarray, others: Sequence[np.ndarray]) -> list[np.ndarray]:
         """Predictions at other values, with the time steps of those at the given ones."""
-        return [np.concatenate([p.values for p in one]) for one in self._beside(values, others)]
+        return [self._joined(found) for found in self._beside(values, others)]
 
     def numbers(self, values: np.ndarray, others: Sequence[np.ndarray]) -> list[dict[str, float]]:
         """Numbers of the summaries of all experiments at other values, as by `neighbours`."""
         named = []
         for found in self._beside(values, others):
-            several = len(found) > 1
+            several, runs = len(found) > 1, zip(self._experiments, found, strict=True)
             named.append(
                 {
-                    f"{name} (experiment {k})" if several else name: number
-                    for k, one in enumerate(found, 1)
+                    f"{name}{experiment.described if several else ''}": number
+                    for experiment, one in runs
                     for name, number in one.numbers.items()
                 }
             )
@@ -94,6 +96,10 @@ class CaseModel:
     def failure(self, values: np.ndarray) -> str:
         """Reason of the first failed run with values of the parameters; empty for none."""
         return next((one.failure for one in self._at(values) if one.failure), "")
+
+    def _joined(self, found: Sequence[Prediction]) -> np.ndarray:
+        """Predictions of all experiments in the order of the measured values."""
+        return np.concatenate([one.values for one in found])[self._order]
 
     def _at(self, values: np.ndarray) -> list[Prediction]:
         key = _key(values)
@@ -140,6 +146,13 @@ class CaseModel:
         runs = zip(self._experiments, found, strict=True)
         if not all(set(one.times) <= set(run.steps[-1:]) for one, run in runs):
             self._known.clear()  # the steps of those runs ended elsewhere
+
+
+def _order_of(experiments: Sequence[Experiment]) -> np.ndarray:
+    """Indices that bring the values of the experiments into the order of the measured values."""
+    if any(one.rows is None for one in experiments):
+        return np.arange(sum(one.count for one in experiments))
+    return np.argsort(np.concatenate([one.rows for one in experiments]))
 
 
 def _key(*points: np.ndarray) -> str:

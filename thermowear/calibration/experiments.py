@@ -36,6 +36,9 @@ class Experiment:
         False until the times of all sliding distances are known.
     smooth : bool
         False if runs choose cycle jumps of their own, even with equal time steps.
+    rows : ndarray of int or None, shape (count,)
+        Indices of its values among those of all measurements; by default they follow those of the
+        experiments before it.
     """
 
     tables: dict[str, Any]
@@ -43,11 +46,18 @@ class Experiment:
     times: tuple[float, ...] = ()
     located: bool = True
     smooth: bool = True
+    rows: np.ndarray | None = None
 
     @property
     def count(self) -> int:
         """Number of measured values."""
         return sum(len(one.values) for one in self.measurements)
+
+    @property
+    def described(self) -> str:
+        """Conditions that differ from those of the case, as the end of a sentence."""
+        conditions = ", ".join(self.measurements[0].conditions)
+        return f" with {conditions}" if conditions else ""
 
     def case(self, overrides: tuple[str, ...]) -> AnyCase:
         """Case with values of the parameters.
@@ -84,7 +94,7 @@ class Experiment:
 
 
 def experiments(case: AnyCase, measurements: Sequence[Measurement]) -> list[Experiment]:
-    """Experiments of a case, one for the measurements of equal conditions.
+    """Experiments of a case, one for the measurements of equal conditions, ordered by these.
 
     Raises
     ------
@@ -92,23 +102,26 @@ def experiments(case: AnyCase, measurements: Sequence[Measurement]) -> list[Expe
         If the conditions or the times do not fit the case.
     """
     tables = {key: table for key, table in as_plain(case).items() if key not in _OTHER}
-    groups: dict[tuple[str, ...], list[Measurement]] = {}
-    for one in measurements:
-        groups.setdefault(one.changes, []).append(one)
+    ends = np.cumsum([0, *(len(one.values) for one in measurements)])
+    groups: dict[tuple[str, ...], list[int]] = {}
+    for k, one in enumerate(measurements):
+        groups.setdefault(one.conditions, []).append(k)
     found = []
-    for changes, members in groups.items():
+    for _, chosen in sorted(groups.items()):
+        members = [measurements[k] for k in chosen]
         try:
-            own = load(tables, changes)
+            own = load(tables, members[0].changes)
         except CaseError as error:
             names = ", ".join(one.label for one in members)
             raise CaseError(
                 *(f"calibrate.observations ({names}): {f}" for f in error.faults)
             ) from None
-        found.append(_experiment(own, members))
+        rows = np.concatenate([np.arange(ends[k], ends[k + 1]) for k in chosen])
+        found.append(_experiment(own, members, rows))
     return found
 
 
-def _experiment(case: AnyCase, members: list[Measurement]) -> Experiment:
+def _experiment(case: AnyCase, members: list[Measurement], rows: np.ndarray) -> Experiment:
     """Experiment that records the faces at the times at which they were measured."""
     tables = {key: table for key, table in as_plain(case).items() if key not in _OTHER}
     times = [float(t) for one in members for t in one.reading.times]
@@ -132,7 +145,7 @@ def _experiment(case: AnyCase, members: list[Measurement]) -> Experiment:
         tables = tables | {"analysis": analysis}
     located = not any("sliding_distance" in one.reading.at for one in members)
     smooth = not (isinstance(case.analysis, Fretting) and case.wear)
-    return Experiment(tables, tuple(members), _distinct(times), located, smooth)
+    return Experiment(tables, tuple(members), _distinct(times), located, smooth, rows)
 
 
 def _distinct(times: Sequence[float]) -> tuple[float, ...]:

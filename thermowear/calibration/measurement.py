@@ -35,3 +35,8 @@ class Measurement:
     changes: tuple[str, ...] = ()
     file: str = ""
     relative: float = 0.0
+
+    @property
+    def conditions(self) -> tuple[str, ...]:
+        """Conditions that it was made under: its changes, whatever their order."""
+        return tuple(sorted(self.changes))

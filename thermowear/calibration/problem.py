@@ -54,6 +54,30 @@ class Problem:
         return NOISE if model.smooth else _ROUGH_NOISE
 
     @property
+    def order(self) -> np.ndarray:
+        """Indices of all values by what they are, whatever the order of observations and rows.
+
+        A search in this order has the same rounding, and hence the same result, for any other.
+        """
+        keys: list[tuple] = []
+        for one in self.measurements:
+            at = sorted(one.reading.at)
+            common = one.conditions, one.reading.name, one.reading.contact or "", tuple(at)
+            columns = (one.reading.at[name] for name in at)
+            rows = zip(*columns, one.values, one.deviations, strict=True)
+            keys += [(*common, *map(float, row)) for row in rows]
+        return np.array(sorted(range(len(keys)), key=keys.__getitem__), dtype=int)
+
+    def in_order(self, order: np.ndarray) -> Problem:
+        """Problem whose predictions are in another order of the values."""
+        places, end = np.argsort(order), 0
+        found = []
+        for one in self.experiments:
+            rows = np.arange(end, end := end + one.count) if one.rows is None else one.rows
+            found.append(replace(one, rows=places[rows]))
+        return replace(self, experiments=found)
+
+    @property
     def weights(self) -> tuple[np.ndarray, tuple[str, ...]]:
         """Deviations and labels of all values."""
         labels = tuple(one.label for one in self.measurements for _ in one.values)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -158,10 +158,11 @@ def solve(problem: Problem, runner: Runner) -> Calibration:
     table = problem.table
     if table.posterior is not None:
         require_emcee()  # before anything is computed
-    began, model = time.perf_counter(), problem.model(runner)
-    observations = Observations(
-        np.concatenate([one.values for one in problem.measurements]), *problem.weights
-    )
+    began, order = time.perf_counter(), problem.order
+    model = problem.in_order(order).model(runner)
+    values = np.concatenate([one.values for one in problem.measurements])
+    given = Observations(values, *problem.weights)
+    observations = given.ordered(order)
     start = problem.space.start
     if reason := (model.failure(start) if not np.isfinite(model.predict(start)).all() else ""):
         raise ComputationError(f"calibrate: the run with the first values failed: {reason}")
@@ -185,11 +186,16 @@ def solve(problem: Problem, runner: Runner) -> Calibration:
             chosen.seed,
             estimated,
         )
-    seconds = time.perf_counter() - began
+    seconds, back = time.perf_counter() - began, np.argsort(order)
     return Calibration(
         table,
         tuple(problem.measurements),
-        found,
+        replace(
+            found,
+            observations=given,
+            predicted=found.predicted[back],
+            jacobian=found.jacobian[back],
+        ),
         identified,
         further,
         posterior,

@@ -42,6 +42,11 @@ class Observations:
     def __len__(self) -> int:
         return len(self.values)
 
+    def ordered(self, order: np.ndarray) -> Observations:
+        """The observations in another order, given by indices."""
+        labels = tuple(self.labels[k] for k in order)
+        return Observations(self.values[order], self.deviations[order], labels)
+
     def residuals(self, predicted) -> np.ndarray:
         """Weighted residuals ``(predicted - observed)/σ``, shape (…, n)."""
         return (np.asarray(predicted, dtype=float) - self.values) / self.deviations

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import sys
+from itertools import permutations
 
 import numpy as np
 import pytest
 
 import thermowear as tw
 from thermowear.app.batch.pool import ProcessPool
+from thermowear.app.calibration.calibrate import problem_of
 from thermowear.app.calibration.record import record_of, rows_of
+from thermowear.calibration.candidate_run import Prediction
 from thermowear.calibration.case_model import CaseModel
 from thermowear.calibration.measurement import Measurement
 from thermowear.calibration.readings import reading
+from thermowear.calibration.solution import solve
 from thermowear.inference import JointNormal, Parameter, ParameterSpace
 
 from .rings import FRICTION, MU, TIMES, WEAR, K, rows_at_times, tables, truth, volumes, write
@@ -125,6 +129,73 @@ def test_exponent_and_coefficient_from_one_load_and_from_two(tmp_path):
     assert two.values == pytest.approx({"k": 5e-8, "b": 1.0}, rel=1e-5)
     # ln(rate) = ln k + b ln p at two pressures
     assert two.standard_errors["b"] == pytest.approx(0.01 * np.sqrt(2) / np.log(2), rel=1e-3)
+
+
+def in_any_order(tmp_path, order, backwards):
+    """Calibration of ``V = k p^b t`` by three tests at 4, 9 and 4 MPa, by a closed form for runs."""
+    ring = tables()
+    ring["wear"]["punch"] |= {"coefficient": "5e-8 1/MPa", "per": "pressure"}
+    parameters = {
+        "k": {"start": 1e-7, "lower": 1e-10, "upper": 1e-5, "scale": "log"},
+        "b": {"start": 1.1, "lower": 0.5, "upper": 2.0},
+    }
+    law = {"wear.punch.coefficient": "{k} 1/MPa^{b}", "wear.punch.pressure_exponent": "{b}"}
+    times, loads, errors = np.array([5.0, 20.0, 50.0]), (4, 9, 4), (0.01, -0.02, 0.03)
+    observations = {}
+    for k in order:
+        rows = [times, 3e-7 * loads[k] ** 0.8 * times * (1 + errors[k]), 1e-8 * times]
+        head = "time [s], wear_volume_1 [mm^3], deviation [mm^3]"
+        path = write(tmp_path / f"{k}.csv", head, [row[::-1] if backwards else row for row in rows])
+        pressure = {"load.mean_pressure": f"{loads[k]} MPa"}
+        observations[f"test_{k}"] = {"file": str(path), "set": pressure}
+
+    def predicted(run):
+        words = dict(change.split("=") for change in run.overrides)
+        k = float(words["wear.punch.coefficient"].strip('"').partition(" ")[0])
+        b = float(words["wear.punch.pressure_exponent"])
+        load = 1e-6 * float(run.experiment.tables["load"]["mean_pressure"].removesuffix(" Pa"))
+        each = [1e-9 * k * load**b * one.reading.times for one in run.experiment.measurements]
+        numbers = {"friction_force": load * k}
+        return Prediction(run.number, np.concatenate(each), (50.0,), np.zeros(2), numbers)
+
+    table = {"parameters": parameters, "set": law, "observations": observations}
+    problem = problem_of(tw.load(ring | {"calibrate": table}))
+    runs = lambda groups: [predicted(run) for group in groups for run in group]  # noqa: E731
+    return solve(problem, runs)
+
+
+def test_the_order_of_observations_has_no_effect(tmp_path):
+    """requirement: values, errors and each row, for any order of tests and of rows, to 1e-12.
+
+    The reference is the least-squares line of ln V over ln p, the errors being small.
+    """
+    found = [
+        in_any_order(tmp_path, order, backwards)
+        for order in permutations(range(3))
+        for backwards in (False, True)
+    ]
+    rate, load = 0.8 * np.log([4, 9, 4]) + np.log1p([0.01, -0.02, 0.03]), np.log([4, 9, 4])
+    weight = 3e-7 * np.array([4.0, 9.0, 4.0]) ** 0.8  # of a logarithm, as deviations are equal
+    b, ln_k = np.polyfit(load, rate, 1, w=weight)
+    assert found[0].values == pytest.approx({"k": 3e-7 * np.exp(ln_k), "b": b}, rel=1e-3)
+    rows = []
+    for one in found:
+        assert one.values == pytest.approx(found[0].values, rel=1e-12, abs=0.0)
+        errors = found[0].standard_errors
+        assert one.standard_errors == pytest.approx(errors, rel=1e-12, abs=0.0)
+        assert one.fit.chi2 == pytest.approx(found[0].fit.chi2, rel=1e-12)
+        records = rows_of(
+            *(one.measurements, one.fit.predicted, one.deviations),
+            *(one.fit.jacobian, one.normal, 0.95, one.fit.noise),
+        )
+        rows.append({(row["observation"], row["time_s"]): row for row in records})
+        for row in records:
+            assert row["predicted"] == pytest.approx(row["observed"], rel=0.05, abs=0.0)
+    for own in rows[1:]:
+        for key, row in own.items():
+            numbers = {name: v for name, v in row.items() if isinstance(v, float)}
+            expected = {name: rows[0][key][name] for name in numbers}
+            assert numbers == pytest.approx(expected, rel=1e-11, abs=0.0)
 
 
 def steady_rate(b):

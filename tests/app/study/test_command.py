@@ -108,8 +108,8 @@ def test_damaged_tables(capsys):
 
 
 def test_failed_variants_are_rows(capsys):
-    """requirement: failed variants are told and counted, and cost nothing else."""
-    assert main(["study", lever(16), *ALONE, "--no-pictures", "-o", "s"]) == 0
+    """requirement: failed variants are told and counted, exit code 2, as those of a sweep."""
+    assert main(["study", lever(16), *ALONE, "--no-pictures", "-o", "s"]) == 2
     table = rows("s/study.csv")
     failed = [row for row in table if row["status"].startswith("failed: ")]
     assert 0 < len(failed) < len(table)
@@ -118,7 +118,9 @@ def test_failed_variants_are_rows(capsys):
     in_sample = [row for row in failed if row["part"] == "sample"]
     assert int(counted["failed"]) == len(in_sample)
     assert int(counted["count"]) == 16 - len(in_sample)
-    assert f"note: {len(failed)} of 19 variants failed; variant " in capsys.readouterr().out
+    printed, told = capsys.readouterr(), f"{len(failed)} of 19 variants failed; variant "
+    assert f"note: {told}" in printed.out
+    assert printed.err.startswith(f"error: {told}")
     assert record("s")["status"] == "done"
 
 

@@ -67,7 +67,7 @@ class BatchReport:
         conclude : callable
             Draws and writes; called if any variant succeeded, of an interrupted command, too.
         tolerant : bool
-            Failed variants are no failure of the command.
+            A record of failed variants among others is that of a complete command.
         """
         status, message = "done", ""
         try:

@@ -35,7 +35,7 @@ def run_study(chosen) -> int:
     CaseError
         If the case has no uncertain inputs, or any variant is invalid; then none is computed.
     ComputationError
-        If all variants failed.
+        If any variant failed; the others are computed and evaluated.
     """
     with Choice(chosen.executor, chosen.processes, chosen.scheduler).crew() as crew:
         return 0 if crew.serves else _run_with(crew, chosen)
@@ -80,8 +80,8 @@ def _run_with(crew: Crew, chosen) -> int:
         count = sum(map(len, left))
         workers = crew.workers(len(left), count) if left else Workers(None)
         plan.compute(left, received, workers.executor, workers.count)
-    if "done" not in folder.ended.values():
-        raise ComputationError(report.failures())
+    if message := report.failures():
+        raise ComputationError(message)
     return 0
 
 

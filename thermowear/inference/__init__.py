@@ -19,6 +19,6 @@ from .joint_normal import JointNormal
 from .observations import Observations
 from .parameters import Parameter, ParameterSpace
 from .posterior import Posterior, log_posterior, require_emcee, sample_posterior
-from .propagation import Band, SampleQuantiles, linear_band, sample_quantiles
+from .propagation import Band, SampleQuantiles, linear_band, quantiles, sample_quantiles
 from .sampling import SaltelliDesign, Sample, latin_hypercube, saltelli, sobol_sequence
 from .sensitivity import SobolIndices, Swings, sobol_indices, swing_points, swings

@@ -17,6 +17,7 @@ from .fit import Fit
 from .joint_normal import JointNormal
 from .observations import Observations
 from .parameters import ParameterSpace
+from .propagation import quantiles
 
 Predictions = Callable[[Sequence[np.ndarray]], Sequence[np.ndarray]]
 """Predictions (n,) at each of several points, perhaps in parallel; NaN where they fail."""
@@ -52,7 +53,8 @@ class Posterior:
 
     def intervals(self, level: float = 0.95) -> np.ndarray:
         """Intervals between equal tails, shape (p, 2)."""
-        return np.quantile(self.values, [(1 - level) / 2, (1 + level) / 2], axis=0).T
+        ends = (1 - level) / 2, (1 + level) / 2
+        return quantiles(self.values, ends, stratified=False).T
 
     @property
     def warning(self) -> str:

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from .jacobian import NOISE
 from .joint_normal import JointNormal
+
+INDEPENDENT: Literal["weibull"] = "weibull"
+"""Rule for quantiles of independent values, see `quantiles`."""
 
 
 @dataclass(frozen=True)
@@ -67,20 +71,48 @@ class SampleQuantiles:
 
 
 def sample_quantiles(
-    outputs: np.ndarray, levels: Sequence[float] = (0.025, 0.25, 0.5, 0.75, 0.975)
+    outputs: np.ndarray,
+    levels: Sequence[float] = (0.025, 0.25, 0.5, 0.75, 0.975),
+    stratified: bool = False,
 ) -> SampleQuantiles:
-    """Quantiles of outputs (n, k) at the points of a sample; NaN and infinities have failed."""
+    """Quantiles of outputs (n, k) at the points of a sample; NaN and infinities have failed.
+
+    Parameters
+    ----------
+    stratified : bool
+        True for one point in each stratum of equal probability, False for independent points; see
+        `quantiles`.
+    """
     outputs = np.asarray(outputs, dtype=float)
-    used = np.isfinite(outputs)
-    counts = used.sum(axis=0)
-    values = np.full((len(levels), outputs.shape[1]), np.nan)
     mean, deviation = np.full((2, outputs.shape[1]), np.nan)
-    for count in np.unique(counts[counts > 0]):  # one pass unless outputs failed differently
-        columns = counts == count
-        kept = outputs[:, columns].T[used[:, columns].T].reshape(-1, count)
-        values[:, columns] = np.quantile(kept, levels, axis=1)
+    for columns, kept in _by_count(outputs):
         mean[columns] = kept.mean(axis=1)
-        deviation[columns] = kept.std(axis=1, ddof=1) if count > 1 else np.nan
+        deviation[columns] = kept.std(axis=1, ddof=1) if kept.shape[1] > 1 else np.nan
+    values = quantiles(outputs, levels, stratified)
+    counts = np.isfinite(outputs).sum(axis=0)
     return SampleQuantiles(
         np.asarray(levels), values, mean, deviation, counts, len(outputs) - counts
     )
+
+
+def quantiles(values: np.ndarray, levels: Sequence[float], stratified: bool) -> np.ndarray:
+    """Quantiles of columns (n, k) over their finite values, shape (m, k); NaN without any.
+
+    The k-th of n independent values lies at the probability k/(n + 1) in the mean (Weibull), that
+    of a stratified sample in the middle of its stratum, (k - 1/2)/n (Hazen): intervals contain the
+    share of the distribution that they are said to. Where values are missing, so are strata.
+    """
+    found = np.full((len(levels), values.shape[1]), np.nan, dtype=values.dtype)
+    for columns, kept in _by_count(values):
+        rule = "hazen" if stratified and kept.shape[1] == len(values) else INDEPENDENT
+        found[:, columns] = np.quantile(kept, levels, axis=1, method=rule)
+    return found
+
+
+def _by_count(values: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Columns that have equally many finite values, and these (columns, count)."""
+    used = np.isfinite(values)
+    counts = used.sum(axis=0)
+    for count in np.unique(counts[counts > 0]):  # one pass unless outputs failed differently
+        columns = counts == count
+        yield columns, values[:, columns].T[used[:, columns].T].reshape(-1, count)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .distributions import UncertainInput
+from .propagation import INDEPENDENT
 from .sampling import columns_of, values_at
 
 _ROUNDING = 1e-12  # relative deviation of an output that counts as constant
@@ -71,7 +72,7 @@ def sobol_indices(
     counts = rng.multinomial(len(used), np.full(len(used), 1 / len(used)), size=resamples)
     ends = [(1 - level) / 2, (1 + level) / 2]
     first_interval, total_interval = (
-        np.quantile(each, ends, axis=0) for each in _estimate(counts, terms)
+        np.quantile(each, ends, axis=0, method=INDEPENDENT) for each in _estimate(counts, terms)
     )
     rows = used.sum(axis=0)
     dropped = len(used) - rows

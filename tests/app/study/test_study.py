@@ -92,7 +92,7 @@ def test_bands_at_other_points_are_interpolated():
     assert "interpolated on x" in found.notes[0]
     middle, high = (found.tables["interface"][f"pressure_Pa_{q}"] for q in ("50", "97.5"))
     np.testing.assert_allclose(middle, np.where(x <= 0.5, 2 + x, 1 + x), rtol=1e-6)
-    np.testing.assert_allclose(high - middle, np.where(x <= 0.5, 0.95, 0.0), atol=1e-6)
+    np.testing.assert_allclose(high - middle, np.where(x <= 0.5, 1.0, 0.0), atol=1e-6)
 
 
 def test_numbers_that_vary_are_outputs():

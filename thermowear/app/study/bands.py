@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ...inference import quantiles
 from ...results.points import InterfaceFields
 from ...results.quantity import table_of
 from ...results.rows import HistoryRow
@@ -36,22 +37,23 @@ class Bands:
     notes: tuple[str, ...] = ()
 
 
-def bands(curves: Sequence[Curves]) -> Bands:
-    """Bands of the curves of all variants that have them."""
+def bands(curves: Sequence[Curves], stratified: bool = False) -> Bands:
+    """Bands of the curves of all variants that have them, of all of a stratified sample or not."""
     tables: dict[str, Columns] = {}
     notes: list[str] = []
     for stem in dict.fromkeys(stem for own in curves for stem in own):
         found = [own[stem] for own in curves if stem in own]
         if len(found) < 2:
             continue
-        columns, note = _over_time(found) if stem == "history" else _at_points(found)
+        of_all = stratified and len(found) == len(curves)
+        columns, note = (_over_time if stem == "history" else _at_points)(found, of_all)
         if columns:
             tables[stem] = columns
         notes += [f"bands_{stem}.csv: {note}"] if note else []
     return Bands(tables, tuple(notes))
 
 
-def _over_time(found: Sequence[Columns]) -> tuple[Columns, str]:
+def _over_time(found: Sequence[Columns], stratified: bool) -> tuple[Columns, str]:
     """Bands of histories up to the earliest end, at times where the steps are dense."""
     ends = np.array([own["time"][-1] for own in found], dtype=float)
     end = ends.min()
@@ -69,10 +71,11 @@ def _over_time(found: Sequence[Columns]) -> tuple[Columns, str]:
     note = f"up to {end:.6g} s, the end of the shortest run" if np.ptp(ends) > 1e-6 * end else ""
     named = table_of(HistoryRow).columns
     columns = {named["time"].header: times}
-    return columns | _quantiles({named[name].header: c for name, c in curves.items()}), note
+    own = {named[name].header: curve for name, curve in curves.items()}
+    return columns | _quantiles(own, stratified), note
 
 
-def _at_points(found: Sequence[Columns]) -> tuple[Columns, str]:
+def _at_points(found: Sequence[Columns], stratified: bool) -> tuple[Columns, str]:
     """Bands at the contact points of all variants, or at those of the first one."""
     first, note = found[0], ""
     places = [name for name in PLACES if name in first]
@@ -90,7 +93,8 @@ def _at_points(found: Sequence[Columns]) -> tuple[Columns, str]:
         note = "interpolated on x, as the contact points differ between the variants"
     named = table_of(InterfaceFields).columns
     columns = {named[name].header: first[name].astype(float) for name in places}
-    return columns | _quantiles({named[name].header: c for name, c in curves.items()}), note
+    own = {named[name].header: curve for name, curve in curves.items()}
+    return columns | _quantiles(own, stratified), note
 
 
 def _coincide(own: Columns, first: Columns, places: Sequence[str], near: float) -> bool:
@@ -107,13 +111,10 @@ def _interpolated(x: np.ndarray, own: Columns, name: str) -> np.ndarray:
     return np.interp(x, own["x"], own[name], np.nan, np.nan)
 
 
-def _quantiles(curves: dict[str, np.ndarray]) -> Columns:
+def _quantiles(curves: dict[str, np.ndarray], stratified: bool) -> Columns:
     """Quantiles of curves (n, m) by header and level."""
     columns: Columns = {}
     for header, values in curves.items():
-        if np.isnan(values).any():
-            found = np.nanquantile(values, list(LEVELS.values()), axis=0)
-        else:
-            found = np.quantile(values, list(LEVELS.values()), axis=0)
+        found = quantiles(values, list(LEVELS.values()), stratified)
         columns |= {f"{header}_{word}": row for word, row in zip(LEVELS, found, strict=True)}
     return columns

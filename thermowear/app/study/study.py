@@ -228,15 +228,16 @@ def evaluated(
     outputs = np.stack(list(varying.values()), axis=1) if varying else np.zeros((len(sample), 0))
     if not varying:
         outputs = np.zeros((len(design.values), 0))
+    drawn = [curves[k] for k in sorted(curves) if curves[k]]
     indices = sobol_indices(*design.split(outputs)) if design.base and varying else None
     return Study(
         design,
         dict(sorted(status.items())),
         varying,
-        sample_quantiles(outputs[sample]),
+        sample_quantiles(outputs[sample], stratified=True),
         indices,
         swings(outputs[design.swings]),
-        bands([curves[k] for k in sorted(curves) if curves[k]]),
+        bands(drawn, stratified=len(drawn) == len(sample)),
     )
 
 

@@ -52,7 +52,15 @@ class StandstillError(ComputationError):
 
 
 class UnwritableError(ComputationError):
-    """Results cannot be written any more, as a disk is full or not available."""
+    """Results cannot be written any more, as a disk is full or not available.
+
+    It ends a command on many runs, as it is no outcome of the run that it happens to.
+    """
+
+    @classmethod
+    def during_run(cls, error: OSError) -> UnwritableError:
+        """Error by a file that a run needs."""
+        return cls(f"a file cannot be read or written: {error}")
 
 
 class CaseNote(UserWarning):

@@ -16,7 +16,7 @@ from typing import Any
 
 from .. import load
 from ..case import AnyCase, as_plain
-from ..errors import CaseError, ComputationError
+from ..errors import CaseError, ComputationError, UnwritableError
 from ..output.folder import ResultsFolder
 from ..output.sweep import SweepFolder, draw_sweep, swept
 from ..results import Result
@@ -123,6 +123,8 @@ def run_sweep(chosen) -> int:
         If any variant is invalid; then none is computed.
     ComputationError
         If any variant failed; the others are computed and written.
+    UnwritableError
+        At the first result that cannot be written.
     """
     with Choice(chosen.executor, chosen.processes, chosen.scheduler).crew() as crew:
         return 0 if crew.serves else _run_with(crew, chosen)
@@ -172,6 +174,9 @@ def compute_variant(series, job: Job) -> Ended:
     problem: BaseException | None = None
     try:
         folder = ResultsFolder(job.path, job.tables, 1, overwrite=True)
+    except CaseError as error:
+        raise UnwritableError(str(error)) from None
+    try:
         try:
             observer, case = Recorder(series.comm, folder), load(job.tables)
             case = with_accurate_mesh(case, series.comm, observer, phases)
@@ -182,9 +187,11 @@ def compute_variant(series, job: Job) -> Ended:
             summary, problem = result.summary, result.stopped
         except BaseException as error:
             problem = error
-        folder.close(status_of(problem).partition(":")[0], message_of(problem))
-    except (CaseError, OSError) as error:  # of the folder; an interrupt still ends the sweep
-        problem = problem if isinstance(problem, KeyboardInterrupt) else error
+        ending = "interrupted" if isinstance(problem, KeyboardInterrupt) else "failed"
+        folder.close("done" if problem is None else ending, message_of(problem))
+    except OSError as error:  # of the folder; an interrupt still ends the sweep
+        kept = isinstance(problem, KeyboardInterrupt | UnwritableError)
+        problem = problem if kept else error
     ended = Ended(job.number, status_of(problem), summary, time.perf_counter() - began)
     if isinstance(problem, KeyboardInterrupt):
         raise Stopped(ended)

@@ -11,7 +11,7 @@ from itertools import chain
 from threading import Lock
 from typing import Any, Protocol
 
-from ...errors import ComputationError
+from ...errors import ComputationError, UnwritableError
 from ...interrupts import DeferredSignals
 
 _LONG = 1.0
@@ -61,11 +61,11 @@ class Stopped(KeyboardInterrupt):
 
 @dataclass(frozen=True)
 class _Done:
-    """Outcomes of a chunk, of its first tasks only if it was interrupted."""
+    """Outcomes of a chunk, of its first tasks only if it was stopped, and what stopped it."""
 
     outcomes: list
     seconds: float
-    interrupted: bool = False
+    stop: KeyboardInterrupt | UnwritableError | None = None
 
 
 @dataclass
@@ -113,14 +113,13 @@ def compute(
 
     Raises
     ------
-    KeyboardInterrupt
+    KeyboardInterrupt, UnwritableError
         After the outcomes that running calls return when they are interrupted.
     """
     if executor is None:
         series = series or new_series()
         for task in chain.from_iterable(groups):
-            if _report(compute_chunk([task], work, series), received).interrupted:
-                raise KeyboardInterrupt
+            _report(compute_chunk([task], work, series), received)
     else:
         _Distribution(groups, work, received, executor).run(workers)
 
@@ -145,7 +144,7 @@ class _Distribution:
                 for future in wait(self._running, return_when=FIRST_COMPLETED)[0]:
                     slot = self._finish(future)
                     self._start(slot, slots)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, UnwritableError):
             self._interrupt()
             raise
 
@@ -175,8 +174,7 @@ class _Distribution:
             slot.size, slot.tasks = 1, [*tasks, *slot.tasks]
             return slot
         slot.adapt(done.seconds)
-        if _report(done, self._received).interrupted:
-            raise KeyboardInterrupt
+        _report(done, self._received)
         return slot
 
     def _interrupt(self) -> None:
@@ -186,15 +184,16 @@ class _Distribution:
             future.cancel()
         self._executor.shutdown(wait=True)  # that of Dask cannot cancel
         for future, (_, tasks) in self._running.items():
-            with suppress(KeyboardInterrupt):  # of a call that returned nothing; others did
+            with suppress(KeyboardInterrupt, UnwritableError):  # of a call that returned nothing; others did
                 if not future.cancelled() and (done := _result(future, tasks)) is not None:
                     _report(done, self._received)
 
 
-def _report(done: _Done, received: Callable[[Any], None]) -> _Done:
+def _report(done: _Done, received: Callable[[Any], None]) -> None:
     for outcome in done.outcomes:
         received(outcome)
-    return done
+    if done.stop is not None:
+        raise done.stop
 
 
 def _result(future: Future, tasks: list) -> _Done | None:
@@ -242,7 +241,9 @@ def _computed(tasks: list, work: BatchWork, series: Callable[[], Any]) -> _Done:
             outcomes.append(work(own, task))
     except KeyboardInterrupt as stop:
         outcomes += [stop.outcome] if isinstance(stop, Stopped) else []
-        return _Done(outcomes, time.perf_counter() - began, interrupted=True)
+        return _Done(outcomes, time.perf_counter() - began, KeyboardInterrupt())
+    except UnwritableError as stop:
+        return _Done(outcomes, time.perf_counter() - began, stop)
     return _Done(outcomes, time.perf_counter() - began)
 
 

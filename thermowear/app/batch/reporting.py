@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from ...errors import CaseError, ComputationError
+from ...errors import CaseError, ComputationError, UnwritableError
 from ...output.files import writing
 from ...output.progress import Terminal
 from ...output.variants.folder import VariantsFolder
@@ -70,22 +70,32 @@ class BatchReport:
             A record of failed variants among others is that of a complete command.
         """
         status, message = "done", ""
-        try:
-            yield
-            message = self.failures()
-            every = set(self._folder.ended.values())
-            if message and not (tolerant and "done" in every):
-                status = "failed"
-        except BaseException as error:
-            status = "interrupted" if isinstance(error, KeyboardInterrupt) else "failed"
-            message = str(error)
-            raise
-        finally:
-            self._folder.close(status, message, time.perf_counter() - self._began)
-            if any(each == "done" for each in self._folder.ended.values()):
-                with writing():
-                    conclude()
-            self.say(f"results in {self._folder.path}")
+        with resumable():
+            try:
+                yield
+                message = self.failures()
+                every = set(self._folder.ended.values())
+                if message and not (tolerant and "done" in every):
+                    status = "failed"
+            except BaseException as error:
+                status = "interrupted" if isinstance(error, KeyboardInterrupt) else "failed"
+                message = str(error)
+                raise
+            finally:
+                self._folder.close(status, message, time.perf_counter() - self._began)
+                if any(each == "done" for each in self._folder.ended.values()):
+                    with writing():
+                        conclude()
+                self.say(f"results in {self._folder.path}")
+
+
+@contextmanager
+def resumable() -> Iterator[None]:
+    """Tell how a command goes on whose results could not be written."""
+    try:
+        yield
+    except UnwritableError as error:
+        raise UnwritableError(f"{error}; mend this, then --resume goes on from here") from None
 
 
 def checksum_of(content: Sequence[Any]) -> str:
@@ -95,7 +105,17 @@ def checksum_of(content: Sequence[Any]) -> str:
 
 
 def status_of(problem: BaseException | None) -> str:
-    """Status of a variant: ``done``, ``interrupted``, or a description of the failure."""
+    """Status of a variant: ``done``, ``interrupted``, or a description of the failure.
+
+    Raises
+    ------
+    UnwritableError
+        If it is one, or an error of a file: its own computation has not failed.
+    """
+    if isinstance(problem, UnwritableError):
+        raise problem
+    if isinstance(problem, OSError):
+        raise UnwritableError.during_run(problem) from None
     if problem is None:
         return "done"
     if isinstance(problem, KeyboardInterrupt):

@@ -11,6 +11,7 @@ from ...errors import ComputationError
 from ...output.progress import Terminal
 from ...output.study import (
     StudyFolder,
+    bands_file,
     draw_study,
     print_study,
     write_bands,
@@ -70,6 +71,7 @@ def _run_with(crew: Crew, chosen) -> int:
 
     def conclude() -> None:
         found = _evaluated(plan, folder)
+        folder.announce_bands([bands_file(stem) for stem in found.bands.tables])
         _write(folder.path, found)
         problems = draw_study(folder.path) if chosen.pictures else []
         for note in (*design.notes, *found.bands.notes, *problems, *_failed(report)):

@@ -10,14 +10,17 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from ..files import write_text
+from ..files import read_object, write_text
 from ..variants.folder import Cell, VariantsFolder
+from .tables import BANDS
 
 CASE = "case.resolved.toml"
 _FILES = (
-    *("quantiles.csv", "sobol.csv", "tornado.csv", "bands_*.csv", CASE, "report.html"),
+    *("quantiles.csv", "sobol.csv", "tornado.csv", CASE, "report.html"),
     *("distributions.png", "tornado.png", "sobol.png", "bands.png"),
 )
+_BANDS = ("bands_history.csv", "bands_interface.csv")
+"""Tables of bands of folders that do not tell theirs, as those up to 0.2.0."""
 _FLOAT = np.dtype("<f4")
 Curves = dict[str, dict[str, np.ndarray]]
 
@@ -59,8 +62,23 @@ class StudyFolder(VariantsFolder):
         resume: bool = False,
     ):
         self.curves: dict[int, Curves] = {}
-        super().__init__(path, headers, cells, {"study": about}, checksum, overwrite, resume)
+        super().__init__(path, headers, cells, {"study": about, "bands": []}, checksum, overwrite, resume)
         write_text(path / CASE, tomli_w.dumps(case))
+
+    def announce_bands(self, names: Sequence[str]) -> None:
+        """Record the tables of bands that will be written: others of such names are the user's."""
+        self._run["bands"] = list(names)
+        self._write_run()
+
+    def files(self) -> tuple[str, ...]:
+        told = (read_object(self.path / "run.json") or {}).get("bands", _BANDS)
+        bands = map(str, told) if isinstance(told, list | tuple) else ()
+        names = (Path(name).name for name in bands)  # none in another folder
+        return *super().files(), *(name for name in names if name.startswith(BANDS))
+
+    def _restore(self, checksum: str) -> None:
+        super()._restore(checksum)
+        self._run["bands"] = [name for name in self.files() if name.startswith(BANDS)]
 
     def add(
         self,

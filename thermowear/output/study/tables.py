@@ -66,7 +66,12 @@ def write_bands(folder: Path, found: Mapping[str, Mapping[str, np.ndarray]]) -> 
     """Write ``bands_history.csv`` and ``bands_interface.csv``, those of contacts by their names."""
     for stem, columns in found.items():
         rows = zip(*columns.values(), strict=True)
-        write_csv(folder / f"{BANDS}{stem}.csv", list(columns), rows)
+        write_csv(folder / bands_file(stem), list(columns), rows)
+
+
+def bands_file(stem: str) -> str:
+    """Name of a table of bands."""
+    return f"{BANDS}{stem}.csv"
 
 
 def read_cells(path: Path) -> list[dict[str, str]]:

@@ -15,7 +15,9 @@ import pytest
 
 import thermowear as tw
 from thermowear.app.cli import main
+from thermowear.errors import CaseError
 from thermowear.output import tables
+from thermowear.output.folder import ResultsFolder
 
 from ..conftest import COLD_RUNNING_IN, DEMOS
 
@@ -105,6 +107,30 @@ def test_one_variant_fails(capsys):
     assert json.loads(Path("s/run.json").read_text())["status"] == "failed"
     assert json.loads(Path("s/002/run.json").read_text())["status"] == "failed"
     assert Path("s/shapes.png").is_file()
+
+
+@pytest.mark.parametrize("broken", ["__init__", "finish", "close"])
+def test_a_full_disk_ends_a_sweep_and_fails_no_variant(broken, monkeypatch, capsys):
+    """requirement: it stops at the first write that fails; --resume computes what is left."""
+    words = ["sweep", LEVER, *SMALL, "--over", "contact.friction=0.1,0.2,0.3", "-o", "s"]
+    words += ["--processes", "1", "--no-pictures"]
+    works = getattr(ResultsFolder, broken)
+
+    def fails(self, *given, **more):
+        works(self, *given, **more)
+        if self.path.name == "002":
+            error = OSError(28, "No space left on device")
+            raise CaseError(f"-o {self.path}: {error}") if broken == "__init__" else error
+
+    with monkeypatch.context() as patched:
+        patched.setattr(ResultsFolder, broken, fails)
+        assert main(words) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "No space left on device; mend this, then --resume" in line
+    assert [row["status"] for row in table("s")] == ["done", "not computed", "not computed"]
+    assert not Path("s/003").exists()
+    assert main([*words, "--resume"]) == 0
+    assert [row["status"] for row in table("s")] == ["done"] * 3
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
+from unittest import mock
 
 import pytest
 
@@ -34,18 +36,70 @@ def begun(tmp_path):
 
 
 def test_what_is_resumed(begun):
-    """requirement: ends and failures are kept; lost variants and incomplete lines are not."""
+    """requirement: ends and failures are kept; lost variants and incomplete lines are not.
+
+    Neither are those that earlier versions recorded as failed by a full disk.
+    """
+    with (begun / JOURNAL).open("ab") as file:
+        full = "failed: results cannot be written: [Errno 28] No space left on device"
+        file.write(json.dumps({"variant": 4, "status": full, "numbers": {}}).encode() + b"\n")
     with (begun / JOURNAL).open("ab") as file:
         file.write('{"variant": 4, "status": "done", "numbers": {"µ'.encode()[:-1])
     folder = folder_of(begun, resume=True)
     assert folder.ended == {k: ENDS[k] for k in (1, 2)}
     assert folder.ends[1].numbers["a"] == 1.5
     lines = (begun / JOURNAL).read_text(encoding="utf-8").splitlines()
-    assert [json.loads(line)["variant"] for line in lines] == [1, 2, 3]
+    assert [json.loads(line)["variant"] for line in lines] == [1, 2, 3, 4]
+
+
+def test_a_line_is_written_whole_or_not_at_all(begun, monkeypatch):
+    """requirement: what a full disk took of a line is removed, so that others may follow."""
+    folder = folder_of(begun, resume=True)
+    before, opened = (begun / JOURNAL).read_bytes(), Path.open
+
+    def full_after(file, data):
+        if not data.startswith(b'{"variant"'):
+            raise OSError(28, "No space left on device")
+        return file.write(data[:6])
+
+    def full(path, *mode, **more):
+        file = opened(path, *mode, **more)
+        disk = mock.MagicMock(wraps=file)
+        disk.__enter__.return_value = disk
+        disk.__exit__.side_effect = lambda *_: file.close()
+        disk.write.side_effect = lambda data: full_after(file, data)
+        return disk
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "open", full)
+        with pytest.raises(UnwritableError, match="No space left"):
+            folder.append({"variant": 4})
+    assert (begun / JOURNAL).read_bytes() == before
+    assert 4 not in folder.ended
+
+
+def test_overwrite_removes_bands_that_were_written_alone(begun):
+    """requirement: tables of bands of the user, with any name, stay where they are."""
+    folder = folder_of(begun, resume=True)
+    folder.announce_bands(["bands_interface.csv"])
+    folder.close("done", "", 1.0)
+    for name in ("bands_interface.csv", "bands_history.csv", "bands_mine.csv"):
+        (begun / name).write_text("mine", encoding="utf-8")
+    folder_of(begun, overwrite=True).close("done")
+    assert {p.name for p in begun.glob("bands_*")} == {"bands_history.csv", "bands_mine.csv"}
 
 
 @pytest.mark.parametrize(
-    "damaged", [b"}{", b"[1]", b'"done"', b'{"variant": 2}', b"\xff", b"{" * 9999]
+    "damaged",
+    [
+        *(b"}{", b"[1]", b'"done"', b'{"variant": 2}', b"\xff", b"{" * 9999),
+        b'{"variant": 9999, "status": "done", "numbers": {}}',
+        b'{"variant": "3", "status": "done", "numbers": {}}',
+        b'{"variant": true, "status": "done", "numbers": {}}',
+        b'{"variant": 3, "status": "done", "numbers": {"a": "1"}}',
+        b'{"variant": 3, "status": ["done"], "numbers": {}}',
+        b'{"variant": 3, "status": "done", "numbers": {}, "curves": {"history": {"time": "!"}}}',
+    ],
 )
 def test_a_damaged_journal(begun, damaged):
     """requirement: the file and the line in one line; nothing is changed."""

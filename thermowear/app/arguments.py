@@ -72,7 +72,7 @@ def _add_runs(commands) -> None:
         required=True,
         help="a key and its values, such as load.force='1 kN,2 kN'; can be repeated",
     )
-    _add_batch(sweep)
+    _add_batch(sweep, "compute the variants that are missing in DIR")
 
     text = "find parameters of a case from measured data"
     calibrate = _results(
@@ -86,8 +86,7 @@ def _add_runs(commands) -> None:
         help="CSV file of an observation; can be repeated",
     )
     _add_flag(calibrate, "--plan", "how well measurements would determine the parameters")
-    _add_flag(calibrate, "--overwrite", "replace existing results")
-    _add_workers(calibrate)
+    _add_batch(calibrate, "continue the search that was stopped in DIR")
 
     text = "propagate uncertain inputs, and rank their influence"
     study = _results(commands, "study", text, "default: results/<case>-study")
@@ -98,7 +97,7 @@ def _add_runs(commands) -> None:
         help="results of a calibration, whose parameters are uncertain inputs, too",
     )
     _add_flag(study, "--indices", "compute Sobol indices, too")
-    _add_batch(study)
+    _add_batch(study, "compute the variants that are missing in DIR")
 
 
 def _add_case_commands(commands) -> None:
@@ -213,16 +212,11 @@ def _add_folder(command: argparse.ArgumentParser) -> None:
     _complete(command.add_argument("folder", metavar="DIR", type=Path), _FOLDERS)
 
 
-def _add_batch(command: argparse.ArgumentParser) -> None:
-    """Options of commands that compute many variants of a case."""
+def _add_batch(command: argparse.ArgumentParser, resumed: str) -> None:
+    """Options of commands that compute many variants of a case, and what they resume."""
     existing = command.add_mutually_exclusive_group()
     _add_flag(existing, "--overwrite", "replace existing results")
-    _add_flag(existing, "--resume", "compute the variants that are missing in DIR")
-    _add_workers(command)
-
-
-def _add_workers(command: argparse.ArgumentParser) -> None:
-    """Options of commands that compute many variants: pictures, and who computes."""
+    _add_flag(existing, "--resume", resumed)
     command.add_argument(
         "--no-pictures", dest="pictures", action="store_false", help="draw nothing"
     )

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..errors import CaseError, ComputationError
+from ..errors import CaseError, ComputationError, UnwritableError
 from ..model.analyses import TimedAnalysis, TransientAnalysis
 from .experiments import Experiment
 from .readings import summary_numbers
@@ -93,6 +93,8 @@ def predict(series, run: CandidateRun) -> Prediction:
         values = [one.reading.of(result) for one in experiment.measurements]
     except ComputationError as error:
         return run.failed(str(error))
+    except OSError as error:
+        raise UnwritableError.during_run(error) from None
     rows = result.history if isinstance(analysis, TimedAnalysis) else []
     return Prediction(
         run.number,

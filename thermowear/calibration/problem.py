@@ -68,6 +68,18 @@ class Problem:
             keys += [(*common, *map(float, row)) for row in rows]
         return np.array(sorted(range(len(keys)), key=keys.__getitem__), dtype=int)
 
+    @property
+    def data(self) -> list[list]:
+        """All that is measured, as plain values."""
+        return [
+            [
+                *(one.label, one.reading.name, one.reading.contact, one.changes, one.relative),
+                {name: values.tolist() for name, values in one.reading.at.items()},
+                *(one.values.tolist(), one.deviations.tolist()),
+            ]
+            for one in self.measurements
+        ]
+
     def in_order(self, order: np.ndarray) -> Problem:
         """Problem whose predictions are in another order of the values."""
         places, end = np.argsort(order), 0

@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 
 import thermowear as tw
 from thermowear.app.cli import main
-from thermowear.output.calibration import draw_calibration
+from thermowear.errors import UnwritableError
+from thermowear.output.calibration import CalibrationFolder, draw_calibration
 
 from .rings import FRICTION, WEAR, K, tables, truth, volumes
 
@@ -109,6 +110,56 @@ def test_pictures_again_and_never_over_others(capsys):
     Path("d/fit.png").write_text("a picture")
     assert main(["calibrate", case, "--data", "scar.csv", "-o", "d", "--overwrite"]) == 1
     assert "not a folder of a calibration" in capsys.readouterr().err
+
+
+def result(folder):
+    """Record of a calibration but for its duration, and its observations."""
+    record = json.loads(Path(folder, "calibration.json").read_text())
+    return record | {"seconds": None}, Path(folder, "observations.csv").read_bytes()
+
+
+def test_a_stopped_search_goes_on(monkeypatch, capsys):
+    """requirement: stopped and resumed, the results are those of one that was not, bit for bit."""
+    volumes(Path("scar.csv"), truth(), 0.02)
+    case = write_case(parameters={"k": WEAR, "mu": FRICTION})
+    words = ["calibrate", case, "--data", "scar.csv", "--no-pictures"]
+    add, count = CalibrationFolder.add, {"whole": 0, "c": 0}
+
+    def counted(self, *outcome):
+        add(self, *outcome)
+        count[self.path.name] += 1
+        if count["c"] == 5:
+            raise UnwritableError("no room")
+
+    monkeypatch.setattr(CalibrationFolder, "add", counted)
+    assert main([*words, "-o", "whole"]) == 0
+    assert main([*words, "-o", "c"]) == 2
+    assert "no room; mend this, then --resume" in capsys.readouterr().err
+    journal = Path("c/runs.jsonl")
+    assert len(journal.read_text().splitlines()) == 5
+    with journal.open("a") as file:
+        file.write('{"key": "cut off')
+    assert main([*words, "-o", "c", "--resume"]) == 0
+    assert result("c") == result("whole")
+    assert count["c"] == count["whole"]
+    assert {p.name for p in Path("c").iterdir()} == {p.name for p in Path("whole").iterdir()}
+    capsys.readouterr()
+    assert main([*words, "-o", "c", "--resume"]) == 0
+    assert "nothing is left to compute" in capsys.readouterr().out
+    assert main([*words, "-o", "c", "--resume", "--set", "calibrate.confidence=0.9"]) == 1
+
+
+@pytest.mark.parametrize("damaged", ["{}", '{"key": 3, "status": "done"}', "[]"])
+def test_a_damaged_journal_of_a_search(damaged, capsys):
+    """requirement: one line with the file and the line."""
+    volumes(Path("scar.csv"), truth(), 0.02)
+    words = ["calibrate", write_case(parameters={"k": WEAR}), "--data", "scar.csv", "-o", "c"]
+    assert main([*words, "--set", "analysis.max_steps=2"]) == 2
+    Path("c/runs.jsonl").write_text(f"{damaged}\n")
+    capsys.readouterr()
+    assert main([*words, "--set", "analysis.max_steps=2", "--resume"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "runs.jsonl, line 1: is damaged" in line
 
 
 def test_plan(capsys):

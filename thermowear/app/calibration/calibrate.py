@@ -7,14 +7,20 @@ from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 
-from ...calibration.candidate_run import CandidateRun, InProcess, Prediction, Runner, predict
+import numpy as np
+
+from ...calibration.candidate_run import CandidateRun, Prediction, Runner, predict
 from ...calibration.planning import Planned, expected
 from ...calibration.problem import Problem
 from ...calibration.solution import Calibration, solve
 from ...case import AnyCase, load
 from ...errors import CaseError
+from ...output.calibration import CalibrationFolder, StoredRun
 from ..batch.computing import Lost, compute, new_series
+from ..batch.reporting import checksum_of
 from .measurements import read_measurements
+
+_FAILED = "failed: "
 
 
 def calibrate(
@@ -76,31 +82,68 @@ def problem_of(
     return Problem.of(case, read_measurements(case, _files(case, data), planned))
 
 
-def runner(executor: Executor | None = None, workers: int | None = None) -> Runner:
-    """Runner in this process, or on an executor."""
-    if executor is None:
-        return InProcess(new_series())
-    return _Distributed(executor, workers or len(os.sched_getaffinity(0)))
+def runner(
+    executor: Executor | None = None,
+    workers: int | None = None,
+    folder: CalibrationFolder | None = None,
+) -> Runner:
+    """Runner in this process, or on an executor, which keeps what it computes in a folder."""
+    return _Runner(executor, workers or len(os.sched_getaffinity(0)), folder)
 
 
-class _Distributed:
-    """Runner on an executor; a run whose process dies has failed."""
+class _Runner:
+    """Runner of batches; a run whose process dies has failed, one in the folder is not repeated."""
 
-    def __init__(self, executor: Executor, workers: int):
-        self._executor, self._workers = executor, workers
+    def __init__(self, executor: Executor | None, workers: int, folder: CalibrationFolder | None):
+        self._executor, self._workers, self._folder = executor, workers, folder
+        self._series = new_series() if executor is None else None
 
     def __call__(self, groups: Sequence[Sequence[CandidateRun]]) -> list[Prediction]:
-        """Compute runs on all workers."""
+        """Compute runs on all workers, but for those that the folder has."""
         found: list[Prediction] = []
+        left: list[list[CandidateRun]] = [[] for _ in groups]
+        runs = {run.number: run for group in groups for run in group}
+        for own, group in zip(left, groups, strict=True):
+            for run in group:
+                if (known := self._known(run)) is not None:
+                    found.append(known)
+                else:
+                    own.append(run)
 
         def received(outcome: Prediction | Lost) -> None:
             if isinstance(outcome, Lost):
-                found.append(outcome.task.failed(outcome.reason))
-            else:
-                found.append(outcome)
+                outcome = outcome.task.failed(outcome.reason)
+            if self._folder is not None:
+                self._folder.add(_key(runs[outcome.number]), _stored(outcome))
+            found.append(outcome)
 
-        compute(groups, predict, received, self._executor, self._workers)
+        left = [group for group in left if group]
+        compute(left, predict, received, self._executor, self._workers, self._series)
         return found
+
+    def _known(self, run: CandidateRun) -> Prediction | None:
+        """Prediction that the folder has."""
+        stored = None if self._folder is None else self._folder.known(_key(run))
+        if stored is None:
+            return None
+        if stored.status != "done":
+            return run.failed(stored.status.removeprefix(_FAILED))
+        if len(stored.values) != run.experiment.count:
+            return None
+        values, distances = np.array(stored.values), np.array(stored.distances)
+        return Prediction(run.number, values, tuple(stored.steps), distances, stored.numbers)
+
+
+def _key(run: CandidateRun) -> str:
+    """Key of a run by all that it depends on."""
+    experiment = run.experiment
+    return checksum_of([experiment.tables, experiment.times, run.overrides, run.steps])
+
+
+def _stored(found: Prediction) -> StoredRun:
+    status = f"{_FAILED}{found.failure}" if found.failure else "done"
+    values = [] if found.failure else found.values.tolist()
+    return StoredRun(status, found.numbers, values, list(found.steps), found.distances.tolist())
 
 
 def _files(case: AnyCase, data) -> dict[str, Path]:

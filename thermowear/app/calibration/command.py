@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,11 @@ from ... import load
 from ...calibration.planning import Planned, expected
 from ...calibration.solution import Calibration, solve
 from ...case import AnyCase, as_plain
-from ...errors import CaseError
+from ...errors import CaseError, UnwritableError
 from ...output.calibration import CalibrationFolder, draw_calibration, write_calibration_report
 from ...output.progress import Terminal
 from ..batch.executors import Choice, Crew
+from ..batch.reporting import checksum_of, resumable
 from .calibrate import problem_of, runner
 from .record import record_of, record_of_plan, rows_of
 
@@ -30,7 +32,8 @@ def run_calibration(chosen) -> int:
     ------
     CaseError, ComputationError
     """
-    with Choice(chosen.executor, chosen.processes, chosen.scheduler).crew() as crew:
+    choice = Choice(chosen.executor, chosen.processes, chosen.scheduler)
+    with choice.crew() as crew, resumable():
         return 0 if crew.serves else _run_with(crew, chosen)
 
 
@@ -39,12 +42,17 @@ def _run_with(crew: Crew, chosen) -> int:
     problem = problem_of(case, _data(chosen.data), chosen.plan)  # before a folder is cleared
     name = "plan" if chosen.plan else "calibration"
     path = chosen.output or Path("results") / f"{chosen.case.stem}-{name}"
-    folder = CalibrationFolder(path, as_plain(case), chosen.overwrite)
+    checksum = checksum_of([as_plain(case), chosen.plan, problem.data])
+    folder = CalibrationFolder(path, as_plain(case), checksum, chosen.overwrite, chosen.resume)
     console = Terminal(highlight=False)
+    if folder.complete:
+        folder.close("done")
+        console.print(f"{path}: is complete, nothing is left to compute", soft_wrap=True)
+        return 0
     try:
         alone = chosen.executor == "processes" and chosen.processes is None
         workers = crew.workers(1, 1 if alone else _PARALLEL)
-        runs = runner(workers.executor, workers.count)
+        runs = runner(workers.executor, workers.count, folder)
         if chosen.plan:
             _finish_plan(folder, console, expected(problem, runs))
         else:
@@ -57,7 +65,8 @@ def _run_with(crew: Crew, chosen) -> int:
         raise
     except BaseException as error:
         interrupted = isinstance(error, KeyboardInterrupt)
-        folder.close("interrupted" if interrupted else "failed", str(error))
+        with suppress(UnwritableError):  # the disk may be the cause
+            folder.close("interrupted" if interrupted else "failed", str(error))
         raise
     folder.close("done")
     if not chosen.plan:

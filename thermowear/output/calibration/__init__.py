@@ -1,5 +1,5 @@
 """Results of a calibration: record, tables, pictures and report."""
 
-from .folder import CalibrationFolder, is_calibration
+from .folder import CalibrationFolder, StoredRun, is_calibration
 from .page import write_calibration_report
 from .pictures import draw_calibration

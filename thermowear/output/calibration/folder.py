@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import tomli_w
 
-from ...errors import CaseError
-from ..files import is_report, read_object, write_text
-from ..folder import Lock, finite, run_ended, run_started, write_json
+from ..files import read_object, write_text, writing
+from ..folder import finite, write_json
 from ..tables import write_csv
+from ..variants.folder import BatchFolder, is_final, numbers_in
 
 RECORD, OBSERVATIONS, POSTERIOR = "calibration.json", "observations.csv", "posterior.csv"
 CALIBRATED, RESOLVED = "case.calibrated.toml", "case.resolved.toml"
@@ -25,41 +26,85 @@ PICTURES = {
     "parameters": "Parameters, one by one and in pairs: 68 % and 95 % regions.",
 }
 """Pictures with their captions."""
-_OURS = {RECORD, OBSERVATIONS, POSTERIOR, CALIBRATED, RESOLVED, "run.json"}
-_OURS |= {f"{name}.png" for name in PICTURES}
+_JOURNAL = "runs.jsonl"
 
 
-class CalibrationFolder:
-    """Writer of the results of one calibration.
+@dataclass(frozen=True)
+class StoredRun:
+    """Outcome of a run of the search: ``done``, or a description of the failure.
+
+    Attributes
+    ----------
+    status : str
+    numbers : dict of str to float
+        Numbers of the summary.
+    values, steps, distances : list of float
+        Predictions [SI], ends of the time steps [s], and sliding distances [m].
+    """
+
+    status: str
+    numbers: dict[str, float]
+    values: list[float]
+    steps: list[float]
+    distances: list[float]
+
+
+class CalibrationFolder(BatchFolder):
+    """Writer of the results of one calibration; see `BatchFolder`.
 
     Parameters
     ----------
     path : Path
-        Folder, created if it does not exist.
     tables : dict
         Case with all default values.
-    overwrite : bool
-        Allow a folder with an earlier calibration, whose results are removed; other files remain.
-
-    Raises
-    ------
-    CaseError
-        If the folder cannot be used.
+    checksum : str
+        Checksum of the case and of the measurements.
+    overwrite, resume : bool
     """
 
-    def __init__(self, path: Path, tables: dict[str, Any], overwrite: bool):
-        self.path = path
-        self._run = run_started(calibration=True)
-        self._made = not path.exists()
-        try:
-            path.mkdir(parents=True, exist_ok=True)
-            self._lock = Lock(path)
-            if any(path.iterdir()):
-                self._clear(overwrite)
-            write_json(path / "run.json", self._run)
-            write_text(path / RESOLVED, tomli_w.dumps(tables))
-        except OSError as error:
-            raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
+    KIND = "calibration"
+    MARK = "calibration"
+    FILES = (
+        *(RECORD, OBSERVATIONS, POSTERIOR, CALIBRATED, RESOLVED, "report.html"),
+        *(f"{name}.png" for name in PICTURES),
+    )
+    JOURNAL = _JOURNAL
+
+    def __init__(
+        self,
+        path: Path,
+        tables: dict[str, Any],
+        checksum: str = "",
+        overwrite: bool = False,
+        resume: bool = False,
+    ):
+        self._tables = tables
+        self._runs: dict[str, StoredRun] = {}
+        super().__init__(path, {"calibration": True}, checksum, overwrite, resume)
+
+    def known(self, key: str) -> StoredRun | None:
+        """Outcome of a run by its key; None if it is to be computed."""
+        return self._runs.get(key)
+
+    def add(self, key: str, run: StoredRun) -> None:
+        """Record the outcome of a run.
+
+        Raises
+        ------
+        UnwritableError
+        """
+        self.append({"key": key, **asdict(run)})
+
+    def _begin(self) -> None:
+        write_text(self.path / RESOLVED, tomli_w.dumps(self._tables))
+
+    def _take_over(self, line: dict[str, Any]) -> None:
+        key, status = line.pop("key"), line["status"]
+        if type(key) is not str or type(status) is not str:
+            raise TypeError("not a run")
+        columns = {name: list(map(float, line[name])) for name in ("values", "steps", "distances")}
+        if is_final(status):
+            self._runs[key] = StoredRun(status, numbers_in(line["numbers"]), **columns)
 
     def finish(
         self,
@@ -81,40 +126,30 @@ class CalibrationFolder:
         posterior : tuple, optional
             Names and values (n, p) of a sample of the posterior distribution.
         """
-        write_json(self.path / RECORD, finite(record))
-        write_csv(self.path / OBSERVATIONS, list(rows[0]), [list(row.values()) for row in rows])
-        if calibrated is not None:
-            write_text(self.path / CALIBRATED, tomli_w.dumps(calibrated))
-        if posterior is not None:
-            write_csv(self.path / POSTERIOR, list(posterior[0]), posterior[1].tolist())
+        with writing():
+            write_json(self.path / RECORD, finite(record))
+            write_csv(self.path / OBSERVATIONS, list(rows[0]), [list(row.values()) for row in rows])
+            if calibrated is not None:
+                write_text(self.path / CALIBRATED, tomli_w.dumps(calibrated))
+            if posterior is not None:
+                write_csv(self.path / POSTERIOR, list(posterior[0]), posterior[1].tolist())
 
-    def close(self, status: str, message: str = "") -> None:
-        """Record how it ended: ``done``, ``failed`` or ``interrupted``."""
-        self._run |= run_ended(status, message)
-        write_json(self.path / "run.json", self._run)
-        self._lock.release()
+    def close(self, status: str, message: str = "", **more: Any) -> None:
+        """Record how it ended, see `BatchFolder`; the journal has served once all is done."""
+        super().close(status, message, **more)
+        if status == "done":
+            (self.path / self.JOURNAL).unlink(missing_ok=True)
 
     def abandon(self) -> None:
-        """Remove the files of a calibration whose case or data prove invalid."""
+        """Remove the files of a calibration whose case or data prove invalid, unless it has runs."""
+        if (self.path / self.JOURNAL).is_file():
+            self.close("failed", "the case proved invalid during the search")
+            return
         for name in (RESOLVED, "run.json"):
             (self.path / name).unlink(missing_ok=True)
         if self._made:
             self.path.rmdir()
         self._lock.release()
-
-    def _clear(self, overwrite: bool) -> None:
-        if not overwrite:
-            raise CaseError(
-                f"-o {self.path}: exists and is not empty; use --overwrite or another folder"
-            )
-        ours = [p for p in self.path.iterdir() if p.name in _OURS or is_report(p)]
-        if ours and not is_calibration(self.path):
-            raise CaseError(
-                f"-o {self.path}: contains {ours[0].name} but is not a folder of a calibration; "
-                "use another folder"
-            )
-        for entry in ours:
-            entry.unlink()
 
 
 def is_calibration(folder: Path) -> bool:

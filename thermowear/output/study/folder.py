@@ -113,7 +113,14 @@ def _packed(curves: Curves) -> dict[str, dict[str, str]]:
 
 
 def _unpacked(packed: dict[str, dict[str, str]]) -> Curves:
-    return {
-        stem: {name: np.frombuffer(base64.b64decode(t), _FLOAT) for name, t in columns.items()}
+    curves = {
+        stem: {name: _array(text) for name, text in columns.items()}
         for stem, columns in packed.items()
     }
+    if any(len({len(v) for v in columns.values()}) != 1 for columns in curves.values()):
+        raise ValueError("columns of several lengths")
+    return curves
+
+
+def _array(text: str) -> np.ndarray:
+    return np.frombuffer(base64.b64decode(text, validate=True), _FLOAT)

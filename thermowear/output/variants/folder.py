@@ -64,6 +64,7 @@ class BatchFolder:
     """Key that only its ``run.json`` has."""
     FILES: ClassVar[tuple[str, ...]]
     """Names of its files, beside the journal and ``run.json``."""
+    JOURNAL: ClassVar[str] = JOURNAL
 
     def __init__(
         self,
@@ -115,7 +116,7 @@ class BatchFolder:
         UnwritableError
         """
         data = f"{json.dumps(finite(line))}\n".encode()
-        with writing(), (self.path / JOURNAL).open("ab", buffering=0) as file:
+        with writing(), (self.path / self.JOURNAL).open("ab", buffering=0) as file:
             end = file.tell()
             try:
                 while data:  # on a full disk it is written in part before there is an error
@@ -143,7 +144,7 @@ class BatchFolder:
                 f"{self.path}; start anew with --overwrite, or use another folder"
             )
         self.complete = before.get("status") == "done"
-        journal = self.path / JOURNAL
+        journal = self.path / self.JOURNAL
         text = journal.read_bytes() if journal.is_file() else b""
         whole = text[: text.rfind(b"\n") + 1]  # the last line may not have been written to its end
         for number, line in enumerate(whole.splitlines(), 1):
@@ -162,7 +163,7 @@ class BatchFolder:
             raise CaseError(
                 f"-o {self.path}: exists and is not empty; use --overwrite or another folder"
             )
-        found = [self.path / name for name in (JOURNAL, "run.json", *self.files())]
+        found = [self.path / name for name in (self.JOURNAL, "run.json", *self.files())]
         ours = [p for p in found if p.is_file() and (p.suffix != ".html" or is_report(p))]
         if not self.is_of_kind(self.path) and ours:
             raise CaseError(

@@ -56,6 +56,10 @@ def validate(chosen) -> int:
 
         check_contact_points(model_of(case), MPI.COMM_SELF)
         properties += [f"initial shape {shape}" for shape in case.initial_shapes]
+    if case.calibrate is not None:
+        from .calibration.calibrate import described_data
+
+        properties += described_data(case)
     print(f"{chosen.case}: ok ({', '.join(properties)})")
     return 0
 

@@ -82,6 +82,31 @@ def problem_of(
     return Problem.of(case, read_measurements(case, _files(case, data), planned))
 
 
+def described_data(case: AnyCase) -> list[str]:
+    """What the data files of a case contain, once they and its first values were checked.
+
+    Observations whose files are named by the command are left out.
+
+    Raises
+    ------
+    CaseError
+    """
+    table = case.calibrate
+    assert table is not None
+    named = {name: own for name, own in table.observations.items() if own.file is not None}
+    if not named:
+        return []
+    known = case.model_copy(update={"calibrate": table.model_copy(update={"observations": named})})
+    try:
+        problem, planned = problem_of(known), ""
+    except CaseError as error:
+        try:
+            problem, planned = problem_of(known, planned=True), " planned"
+        except CaseError:
+            raise error from None
+    return [f"{sum(len(one.values) for one in problem.measurements)}{planned} observations"]
+
+
 def runner(
     executor: Executor | None = None,
     workers: int | None = None,

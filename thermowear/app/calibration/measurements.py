@@ -10,7 +10,7 @@ from ...calibration.measurement import Measurement
 from ...calibration.readings import PLACES, known_quantities, reading
 from ...case import AnyCase
 from ...case.assembly.schema import AssemblyCase
-from ...case.studies.calibration import ObservationTable
+from ...case.studies.calibration import ROUNDING, ObservationTable
 from ...case.values.csv_columns import Columns, column_names, read_columns
 from ...case.values.units import parse, registry, unit_of
 from ...errors import CaseError
@@ -20,6 +20,8 @@ _AT = {**dict.fromkeys(PLACES, "mm"), "time": "s", "sliding_distance": "m", "cyc
 """Columns of times and places, with a suitable unit."""
 _SI = {key: {"mm": "m"}.get(unit, unit) for key, unit in _AT.items()}
 _DEVIATION = "deviation"
+_SMALLEST = 1e-60
+"""Smallest standard deviation [SI]: squares of weighted residuals remain finite."""
 _MASS = {f"worn_mass_{k}": "g" for k in (1, 2)}
 
 
@@ -150,6 +152,14 @@ def _deviations(
             found = own.deviation.relative * np.abs(values)
     if (found <= 0.0).any():
         raise ValueError(f"{columns.name}: the {_DEVIATION} of {column} must be greater than 0")
+    low = found < np.maximum(ROUNDING * np.nan_to_num(np.abs(values)), _SMALLEST)
+    relative = (own.deviation.relative if own.deviation else None) or 1.0
+    if low.any() or relative < ROUNDING:
+        k = int(np.argmax(low))
+        raise ValueError(
+            f"{columns.name}, line {columns.lines[k]}: the {_DEVIATION} of {column}, "
+            f"{relative if relative < ROUNDING else found[k]:g}, is below the rounding of numbers"
+        )
     return found
 
 
@@ -168,7 +178,8 @@ def _number(value: str | float, unit: str, difference: bool) -> float:
         return value
     given = parse(value, f"1 {unit}")
     if not given.is_compatible_with(unit_of(unit)):
-        raise ValueError(f"found the unit {given.units:~P}; must be in {unit}")
+        product = "; a product has a space, as in kN m" if value.endswith("Nm") else ""
+        raise ValueError(f"found the unit {given.units:~P}; must be in {unit}{product}")
     found = given.to(unit_of(unit)).magnitude
     if difference:
         zero = registry().Quantity(0.0, given.units)

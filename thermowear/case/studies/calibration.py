@@ -13,6 +13,8 @@ from ..values.section import KeyFault, Number, Section, UserFile
 from .scalars import Scalar, ScalarKey, SpreadKey
 
 _NAME = re.compile(r"[^\W\d]\w*")
+ROUNDING = 1e-12
+"""Smallest standard deviation, relative to the value: the search has errors of this size."""
 _IN_BRACES = re.compile(r"\{([^{}]*)\}")
 
 
@@ -81,6 +83,8 @@ class ParameterTable(Section):
             raise KeyFault("prior", f"{error}, the unit of start") from None
         if not deviation > 0.0:
             raise KeyFault("prior.deviation", "must be greater than 0; a percentage of 0 is 0")
+        if deviation < ROUNDING * max(abs(mean), abs(self.start.number)):
+            raise KeyFault("prior.deviation", f"is below the rounding of numbers, {ROUNDING:g}")
         if self.scale == "log" and not mean > 0.0:
             raise KeyFault("prior.value", "must be greater than 0 on a logarithmic scale")
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import difflib
+import math
 import re
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,7 +17,11 @@ LARGEST = 10_000_000
 MOST_ROWS = 5_000
 """Largest number of rows: each is a step boundary, and is written to the resolved case."""
 _SHOWN = 40  # characters quoted from a cell
-_HEAD = re.compile(r"([^\[\]]+?)\s*(?:\[([^\[\]]*)\])?")
+_HEAD = re.compile(r"([^\[\]()]+?)\s*(?:\[(?P<unit>[^\[\]]*)\]|\((?P<in_words>[^\[\]]*)\))?")
+_SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
+"""First line by which spreadsheets tell the separator."""
+_MOST_NAMES = 12
+"""Largest number of known columns that a message lists; of more, those of similar names."""
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", re.ASCII)
 
 
@@ -54,8 +60,9 @@ def column_names(path: Path) -> list[str]:
 def read_columns(path: Path, known: dict[str, str], ordered: bool = True) -> Columns:
     """Read a CSV file: a header such as ``time [s], force [kN]``, then rows of numbers.
 
-    Commas, semicolons or tabs separate the cells; numbers have a decimal point; empty lines and
-    comments (``#``) are skipped.
+    Commas, semicolons or tabs separate the cells; numbers have a decimal point; units are in
+    brackets or parentheses; empty lines and comments (``#``) are skipped, and columns of empty
+    cells, as spreadsheets leave them at the end.
 
     Parameters
     ----------
@@ -73,10 +80,9 @@ def read_columns(path: Path, known: dict[str, str], ordered: bool = True) -> Col
     """
     name = path.name
     rows = _rows(name, _text(path))
-    allowed = ", ".join(f"{key} [{unit}]" if unit else key for key, unit in known.items())
     if not rows:
-        raise ValueError(f"{name} is empty; needs a header with columns of: {allowed}")
-    heads = _heads(name, *rows[0], known, allowed)
+        raise ValueError(f"{name} is empty; needs a header with columns of: {_listed(known)}")
+    heads = _heads(name, *rows[0], known)
     body = rows[1:]
     if not body:
         raise ValueError(f"{name} has a header but no rows of numbers")
@@ -98,7 +104,7 @@ def _text(path: Path) -> str:
     except OSError as error:
         raise ValueError(f"{path} cannot be read: {error.strerror}") from None
     except ValueError as error:  # not in UTF-8, or an invalid file name
-        raise ValueError(f"{path} {error}") from None
+        raise ValueError(f"{path} {error}; save it as CSV in UTF-8") from None
 
 
 def _rows(name: str, text: str) -> list[tuple[int, list[str]]]:
@@ -110,32 +116,50 @@ def _rows(name: str, text: str) -> list[tuple[int, list[str]]]:
     ]
     if not lines:
         return []
-    separator = next((mark for mark in ";\t" if mark in lines[0][1]), ",")
-    cells = csv.reader((line for _, line in lines), delimiter=separator, skipinitialspace=True)
+    told = _SEPARATOR.fullmatch(lines[0][1].strip("\ufeff "))
+    lines = lines[1:] if told else lines
+    if not lines:
+        return []
+    separator = told[1] if told else next((mark for mark in ";\t" if mark in lines[0][1]), ",")
+    options: dict = {"delimiter": separator, "skipinitialspace": separator != " ", "strict": True}
+    cells = csv.reader((line for _, line in lines), **options)
     found: list[tuple[int, list[str]]] = []
     for number, _ in lines:
         try:
             found.append((number, [cell.strip() for cell in next(cells)]))
-        except csv.Error as error:
-            raise ValueError(f"{name}, line {number}: {error}") from None
-        except StopIteration:  # a quotation mark has joined lines
+        except (csv.Error, StopIteration) as error:  # a quotation mark may have joined lines
+            if isinstance(error, csv.Error) and "end of data" not in str(error):
+                raise ValueError(f"{name}, line {number}: {error}") from None
             raise ValueError(f"{name}: a quotation mark is not closed on its line") from None
+    while all(len(row) > 1 and not row[-1] for _, row in found):
+        found = [(number, row[:-1]) for number, row in found]
     return found
 
 
-def _heads(
-    name: str, line: int, cells: list[str], known: dict[str, str], allowed: str
-) -> dict[str, str]:
+def _listed(known: dict[str, str], name: str = "") -> str:
+    """Known columns with their units, or those of a similar name if there are many."""
+    if len(known) > _MOST_NAMES:
+        close = difflib.get_close_matches(name, known, _MOST_NAMES // 2, cutoff=0.5)
+        names = dict.fromkeys([*close, *list(known)[: _MOST_NAMES // 2]])
+        known = {key: known[key] for key in names}
+        return f"{_listed(known)}, and other names of docs/reference/results.md"
+    return ", ".join(f"{key} [{unit}]" if unit else key for key, unit in known.items())
+
+
+def _heads(name: str, line: int, cells: list[str], known: dict[str, str]) -> dict[str, str]:
     """Units by key, in the order of the columns; empty for plain numbers."""
     where, heads = f"{name}, line {line}", {}
     for cell in cells:
         match = _HEAD.fullmatch(cell)
         key = _name(match[1]) if match else ""
         if match is None or key not in known:
-            raise ValueError(f"{where}: found the column {_shown(cell)}; known: {allowed}")
+            raise ValueError(
+                f"{where}: found the column {_shown(cell)}; known: {_listed(known, key)}; lines "
+                "that are neither header nor numbers begin with #"
+            )
         if key in heads:
             raise ValueError(f"{where}: the column {key} is given twice")
-        unit = (match[2] or "").strip()
+        unit = (match["unit"] or match["in_words"] or "").strip()
         unit = "" if unit in ("-", "1") else unit
         if known[key] and not unit:
             raise ValueError(f"{where}: {key}: unit missing; write {key} [{known[key]}]")
@@ -158,8 +182,11 @@ def _numbers(name: str, line: int, cells: list[str], keys: list[str]) -> list[fl
     if len(cells) != len(keys):
         raise ValueError(f"{where}: has {len(cells)} cells for {len(keys)} columns")
     for key, cell in zip(keys, cells, strict=True):
-        if not _NUMBER.fullmatch(cell):
-            raise ValueError(f"{where}: {key}: found {_shown(cell)}; must be a finite number")
+        if not _NUMBER.fullmatch(cell) or not math.isfinite(float(cell)):
+            point = " with a decimal point" if "," in cell else ""
+            raise ValueError(
+                f"{where}: {key}: found {_shown(cell)}; must be a finite number{point}"
+            )
     return [float(cell) for cell in cells]
 
 

@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 
 from thermowear.output.console import print_summary
-from thermowear.output.progress import ConsoleProgress
+from thermowear.output.progress import ConsoleProgress, Terminal
 from thermowear.results import HistoryRow
 
 
@@ -79,3 +79,26 @@ def test_tables_of_bodies_and_contacts():
     print_summary(Console(file=text, width=80), summary, {})
     assert "worn volume [mm³]" in text.getvalue()
     assert text.getvalue().splitlines()[-2].split() == ["phase", "seconds"]
+
+
+@pytest.mark.parametrize("name", ["[/]", "[bold]disk", "[red on blue]", ":smile:", "\\[a]", "50%"])
+@pytest.mark.parametrize("kind", [Console, Terminal])
+def test_names_are_text(kind, name):
+    """requirement: names of bodies, holders and probes appear as they are, whatever they mean."""
+    summary = {kind: {name: {"approach_m": 1e-6}} for kind in ("holders", "probes")}
+    summary["probes"][name] = {"temperature_K": 300.0}
+    summary["bodies"] = {name: {"contact_heat_W": 2.0}}
+    text = io.StringIO()
+    console = kind(file=text, width=100, force_terminal=True, color_system=None)
+    print_summary(console, summary, {name: 1.0})
+    with ConsoleProgress(console) as progress:
+        progress.phase(name)
+        progress.note(f"{name} is hot")
+    assert text.getvalue().count(name) >= 5
+
+
+def test_paths_are_text():
+    """requirement: the last line of a command names the folder as it is."""
+    text = io.StringIO()
+    Terminal(file=text, width=40).print("results in [/]/:smile:/[bold]", soft_wrap=True)
+    assert text.getvalue() == "results in [/]/:smile:/[bold]\n"

@@ -6,6 +6,7 @@ import matplotlib as mpl
 import matplotlib.image as mpimg
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 from thermowear import CaseError
 from thermowear.app.cli import main
@@ -177,3 +178,22 @@ def test_sections_need_no_other_process(folders, monkeypatch):
 def test_no_results_no_pictures(tmp_path):
     with pytest.raises(CaseError, match=r"interface\.csv"):
         make_pictures(tmp_path)
+
+
+def test_names_are_text_in_pictures(tmp_path):
+    """requirement: a name that looks like mathematics is drawn as it is, powers of ten as such."""
+    with column(tmp_path / "p.png", 2, 2.0, sharex=False) as (first, second):
+        first.plot([1, 2], [1, 2], label="$^$")
+        first.set_title("$^$")
+        first.legend()
+        first.set_xticks([1, 2], ["$\\alpha$", "$_$"])
+        second.plot([1, 2], [1e-3, 1e5])
+        second.set_yscale("log")
+        second.set_ylabel("$x^$ [kN]")
+    texts = {text.get_text(): text.get_parse_math() for text in first.figure.findobj(Text)}
+    names = ("$^$", "$\\alpha$", "$_$", "$x^$ [kN]")
+    assert not any(texts[name] for name in names)
+    powers = [text for text in texts if "mathdefault" in text]
+    assert powers
+    assert all(texts[power] for power in powers)
+    assert mpimg.imread(tmp_path / "p.png")[..., :3].std() > 0.01

@@ -117,12 +117,12 @@ def run_session(chosen, comm, import_seconds: float) -> int:
     case = on_root(comm, lambda: load(chosen.case, tuple(chosen.overrides)))
     path = chosen.output or Path("results") / chosen.case.stem
     plain = False if comm.size > 1 else None  # a launcher's pseudo-terminal is no real one
-    console = Terminal(highlight=False, quiet=comm.rank != 0, force_terminal=plain)
+    console = Terminal(quiet=comm.rank != 0, force_terminal=plain)
     if chosen.resume:
         case = on_root(comm, lambda: on_its_mesh(path, case))
     if chosen.resume and on_root(comm, lambda: is_finished(path, case)):
         text = f"{path}: the run is complete, nothing is left to compute"
-        console.print(text, markup=False, soft_wrap=True)
+        console.print(text, soft_wrap=True)
         return 0
     saved = _saved(comm, path, case) if chosen.resume else None
     folder = _on_root_kept(comm, lambda: _folder(path, case, comm.size, chosen, saved))

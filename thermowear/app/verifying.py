@@ -23,7 +23,7 @@ def verify(chosen) -> int:
     if chosen.json:
         print(json.dumps([check.as_row() for check in checks], indent=2, ensure_ascii=False))
     else:
-        print_checks(Terminal(highlight=False), checks)
+        print_checks(Terminal(), checks)
     if left_out:
         print(
             f"note: slow cases not computed: {', '.join(left_out)} (use --slow or their names)",

@@ -6,15 +6,14 @@ from math import pi
 from typing import Any
 
 from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
+from rich.text import Text
 
 from ..balances import errors_of, holds
 from ..results.summary_keys import PHASES, of_key
 from .files import between
+from .progress import PlainTable
 from .readable import readable, readable_unit
 
-_PLAIN: dict[str, Any] = {"box": None, "padding": (0, 2, 0, 0)}
 _OF_PARTS = {
     "contacts": (
         "normal_force_N",
@@ -41,7 +40,7 @@ _SMALLEST_SHOWN = 1e-3
 
 def print_summary(console: Console, summary: dict, seconds: dict[str, float]) -> None:
     """Print the main results and the wall time by phase."""
-    numbers = Table(show_header=False, **_PLAIN)
+    numbers = PlainTable(show_header=False)
     for label, value in _highlights(summary):
         numbers.add_row(label, value)
     console.print(numbers)
@@ -57,19 +56,19 @@ def print_summary(console: Console, summary: dict, seconds: dict[str, float]) ->
     console.print(times)
 
 
-def _side_by_side(kind: str, parts: dict[str, dict[str, Any]], keys: list[str]) -> Table:
+def _side_by_side(kind: str, parts: dict[str, dict[str, Any]], keys: list[str]) -> PlainTable:
     """Numbers of the contacts, holders or bodies of a model, a row for each of them."""
     quantities = [of_key(key) for key in keys]
-    table = _table(kind, *(escape(f"{q.label} [{q.unit}]") for q in quantities))
+    table = _table(kind, *(f"{q.label} [{q.unit}]" for q in quantities))
     for name, part in parts.items():
         values = zip(quantities, (part.get(key) for key in keys), strict=True)
         table.add_row(name, *("" if v is None else f"{q.drawn(v):.5g}" for q, v in values))
     return table
 
 
-def _table(label: str, *columns: str) -> Table:
+def _table(label: str, *columns: str) -> PlainTable:
     """Table without lines: labels in the first column, numbers in the others."""
-    table = Table(label, **_PLAIN)
+    table = PlainTable(label)
     for name in columns:
         table.add_column(name, justify="right", overflow="fold")
     return table
@@ -87,7 +86,7 @@ def print_discretisations(console: Console, summary: dict, keys: tuple[str, ...]
     console.print(table)
     for name, numbers in (("coarser", coarser), ("finer", finer)):
         ended = f"failed: {numbers['failed']}" if "failed" in numbers else numbers["changes"]
-        console.print(f"{name}: {ended}", highlight=False, markup=False)
+        console.print(Text(f"{name}: {ended}"))
 
 
 def print_checks(console: Console, checks: list) -> None:
@@ -109,7 +108,7 @@ def print_checks(console: Console, checks: list) -> None:
     lines += dict.fromkeys(f"{c.id}: {c.source}" for c in checks)
     failed = sum(not c.passed for c in checks)
     lines.append(f"{len(checks) - failed} passed, {failed} failed")
-    console.print("\n".join(lines), markup=False, soft_wrap=True)
+    console.print(Text("\n".join(lines)), soft_wrap=True)
 
 
 def _highlights(summary: dict):

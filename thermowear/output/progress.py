@@ -7,6 +7,8 @@ import sys
 import time
 
 from rich.console import Console
+from rich.table import Table
+from rich.text import Text
 
 from ..results.summary_keys import PHASES
 from .readable import readable_unit
@@ -14,8 +16,26 @@ from .readable import readable_unit
 _PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
 
 
+class PlainTable(Table):
+    """Table without lines, whose cells are text as it is: names may look like markup."""
+
+    def __init__(self, *headers: str, **options):
+        super().__init__(*headers, box=None, padding=(0, 2, 0, 0), **options)
+
+    def add_row(self, *cells: str) -> None:  # type: ignore[override]
+        """Add a row of text."""
+        super().add_row(*map(Text, cells))
+
+    def add_column(self, header: str = "", **options) -> None:  # type: ignore[override]
+        """Add a column with a text as its header."""
+        super().add_column(Text(header), **options)
+
+
 class Terminal(Console):
-    """Standard output; a closed pipe (``| head``) does not end a run."""
+    """Standard output of text as it is; a closed pipe (``| head``) does not end a run."""
+
+    def __init__(self, **options):
+        super().__init__(markup=False, emoji=False, highlight=False, **options)
 
     def on_broken_pipe(self) -> None:
         self.quiet = True
@@ -45,12 +65,12 @@ class ConsoleProgress:
         if self._status is not None:
             self._status.stop()
         if self._unsaid:
-            self._console.print(self._unsaid, highlight=False, soft_wrap=True)
+            self._console.print(Text(self._unsaid), soft_wrap=True)
 
     def phase(self, name: str) -> None:
         """Show the phase that begins."""
         if self._status is not None:
-            self._status.update(PHASES.get(name, name))
+            self._status.update(Text(PHASES.get(name, name)))
 
     def step(self, number: int, row, distance: float) -> None:
         """Show an accepted step of a transient run."""
@@ -70,14 +90,14 @@ class ConsoleProgress:
 
     def note(self, text: str) -> None:
         """Print a note for the user."""
-        self._console.print(f"note: {text}", highlight=False, markup=False, soft_wrap=True)
+        self._console.print(Text(f"note: {text}"), soft_wrap=True)
 
     def _say(self, text: str) -> None:
         """Show the latest state on the live line, or print a line every few seconds."""
         self._unsaid = text
         if self._status is not None:
-            self._status.update(text)
+            self._status.update(Text(text))
         elif time.monotonic() - self._last > _PLAIN_INTERVAL:
             self._last = time.monotonic()
-            self._console.print(text, highlight=False, soft_wrap=True)
+            self._console.print(Text(text), soft_wrap=True)
             self._unsaid = ""

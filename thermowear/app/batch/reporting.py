@@ -30,7 +30,7 @@ class BatchReport:
 
     def __init__(self, folder: VariantsFolder, named: Callable[[int], str], interval: float = 0.0):
         self._folder, self._named, self._interval = folder, named, interval
-        self.console = Terminal(highlight=False)
+        self.console = Terminal()
         self._began = time.perf_counter()
         self._printed = -interval
 
@@ -47,7 +47,7 @@ class BatchReport:
 
     def say(self, text: str) -> None:
         """Print a line as it is."""
-        self.console.print(text, markup=False, soft_wrap=True)
+        self.console.print(text, soft_wrap=True)
 
     def failures(self) -> str:
         """Failures in one line; empty if all variants succeeded."""

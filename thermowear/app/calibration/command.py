@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from rich.table import Table
 
 from ... import load
 from ...calibration.planning import Planned, expected
@@ -15,7 +14,7 @@ from ...calibration.solution import Calibration, solve
 from ...case import AnyCase, as_plain
 from ...errors import CaseError, UnwritableError
 from ...output.calibration import CalibrationFolder, draw_calibration, write_calibration_report
-from ...output.progress import Terminal
+from ...output.progress import PlainTable, Terminal
 from ..batch.executors import Choice, Crew
 from ..batch.reporting import checksum_of, resumable
 from .calibrate import problem_of, runner
@@ -44,7 +43,7 @@ def _run_with(crew: Crew, chosen) -> int:
     path = chosen.output or Path("results") / f"{chosen.case.stem}-{name}"
     checksum = checksum_of([as_plain(case), chosen.plan, problem.data])
     folder = CalibrationFolder(path, as_plain(case), checksum, chosen.overwrite, chosen.resume)
-    console = Terminal(highlight=False)
+    console = Terminal()
     if folder.complete:
         folder.close("done")
         console.print(f"{path}: is complete, nothing is left to compute", soft_wrap=True)
@@ -59,7 +58,7 @@ def _run_with(crew: Crew, chosen) -> int:
             _finish(folder, console, case, solve(problem, runs))
         if chosen.pictures:
             for missing in draw_calibration(path):
-                console.print(f"note: {missing}", markup=False, soft_wrap=True)
+                console.print(f"note: {missing}", soft_wrap=True)
     except CaseError:  # the results of a run do not have what was measured
         folder.abandon()
         raise
@@ -71,7 +70,7 @@ def _run_with(crew: Crew, chosen) -> int:
     folder.close("done")
     if not chosen.plan:
         write_calibration_report(path)
-    console.print(f"results in {path}", markup=False, soft_wrap=True)
+    console.print(f"results in {path}", soft_wrap=True)
     return 0
 
 
@@ -116,10 +115,9 @@ def _finish(
     console.print(
         f"{len(observed)} observations, reduced chi² {fit.reduced_chi2:.3g}; {found.runs} runs, "
         f"{found.seconds:.1f} s",
-        markup=False,
     )
     for text in found.notes():
-        console.print(f"note: {text}", markup=False, soft_wrap=True)
+        console.print(f"note: {text}", soft_wrap=True)
 
 
 def _finish_plan(folder: CalibrationFolder, console: Terminal, found: Planned) -> None:
@@ -137,7 +135,7 @@ def _finish_plan(folder: CalibrationFolder, console: Terminal, found: Planned) -
     folder.finish(record, rows)
     _print_parameters(console, record)
     names = list(found.table.parameters)
-    shown = Table("standard errors", *names, box=None, padding=(0, 2, 0, 0))
+    shown = PlainTable("standard errors", *names)
     for what, each in (("only", found.design.alone), ("without", found.design.without)):
         for label, one in each.items() if len(each) > 1 else ():
             errors = zip(one.standard_errors, found.table.parameters.values(), strict=True)
@@ -145,12 +143,12 @@ def _finish_plan(folder: CalibrationFolder, console: Terminal, found: Planned) -
     if shown.row_count:
         console.print(shown)
     for text in found.notes():
-        console.print(f"note: {text}", markup=False, soft_wrap=True)
+        console.print(f"note: {text}", soft_wrap=True)
 
 
 def _print_parameters(console: Terminal, record: dict[str, Any]) -> None:
     level = f"{100 * record['confidence']:g} % interval"
-    shown = Table("parameter", "value", level, "standard error", box=None, padding=(0, 2, 0, 0))
+    shown = PlainTable("parameter", "value", level, "standard error")
     for name, one in record["parameters"].items():
         low, high = one["interval"]
         unit = f" {one['unit']}" if one["unit"] else ""

@@ -54,7 +54,7 @@ def _run_with(crew: Crew, chosen) -> int:
     cells: list[list[float | str]] = [
         [part, *map(float, row)] for part, row in zip(design.parts, design.si, strict=True)
     ]
-    Terminal(highlight=False).print(f"checking {len(changes)} variants")
+    Terminal().print(f"checking {len(changes)} variants")
     groups = checked_groups(plan.tables, design, every)
     about = _about(plan)
     folder = StudyFolder(

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.ticker import FixedLocator
 from PIL import Image
 
@@ -21,11 +22,22 @@ _WHITE = 250  # least value of the channels of white
 def save(figure: Figure, path: Path, crop: bool = False) -> None:
     """Write a figure as a picture; `Figure.savefig` would draw it twice, first for its layout."""
     canvas = FigureCanvasAgg(figure)
+    show_as_text(figure)
     _fix_ticks(figure)
     canvas.draw()
     pixels = np.asarray(canvas.buffer_rgba())[..., :3]
     picture = Image.fromarray(np.ascontiguousarray(pixels[content(pixels)] if crop else pixels))
     picture.save(path, dpi=(DPI, DPI), compress_level=_COMPRESSION)
+
+
+def show_as_text(figure: Figure) -> None:
+    """Draw all texts as they are: names of bodies may look like mathematics ("$").
+
+    Those by matplotlib, on logarithmic axes, are mathematics.
+    """
+    for text in figure.findobj(Text):
+        if "$" in text.get_text() and not text.get_text().startswith(r"$\mathdefault{"):
+            text.set_parse_math(False)
 
 
 def _fix_ticks(figure: Figure) -> None:

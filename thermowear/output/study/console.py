@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
+from ..progress import PlainTable
 from .record import StudyRecord, read_study
 
 _NAMED = 3
@@ -22,9 +21,9 @@ def print_study(console: Console, folder: Path) -> None:
         return
     share = "total Sobol index" if record.indices else "share in the squared swings"
     heads = ("output", "median", "95 % interval", f"most influential inputs ({share})")
-    table = Table(*heads, box=None, padding=(0, 2, 0, 0))
+    table = PlainTable(*heads)
     for output in record.main:
-        table.add_row(*map(escape, _line(record, output)))
+        table.add_row(*_line(record, output))
     console.print(table)
 
 

@@ -15,6 +15,7 @@ from ....errors import CaseError
 from ...files import contacts_of, name_at
 from ..kinds import FPS, has_frames, is_surface
 from ..panels import STYLE, color_map
+from ..saving import show_as_text
 from .panels import SectionPanel, SolidPanel, TimeCurve, contact_curves, face_maps
 from .states import FrameSequence, FrameState, ScenePanel, read_frames
 from .writers import GIF, MP4, common_palette, ffmpeg, write_gif, write_mp4
@@ -77,6 +78,7 @@ class Scene:
                 panel.prepare(axes[name])
             self._time = axes["bodies"].set_title("", loc="left", fontsize="large", color="tab:red")
         self._fill(frames.states[-1])
+        show_as_text(self._figure)
         self._figure.draw_without_rendering()
         self._figure.set_layout_engine("none")
 

@@ -216,9 +216,20 @@ def read_object(path: Path) -> dict[str, Any] | None:
 
 
 def read_summary(folder: Path) -> dict[str, Any]:
-    """Summary of the run in a results folder; empty if there is none."""
+    """Summary of the run in a results folder; empty if there is none.
+
+    Raises
+    ------
+    ValueError
+        If the file is damaged.
+    """
     path = folder / "summary.json"
-    return json.loads(path.read_bytes()) if path.is_file() else {}
+    if not path.is_file():
+        return {}
+    found = json.loads(path.read_bytes())
+    if not isinstance(found, dict):
+        raise ValueError(f"{path}: is damaged: no table of numbers")
+    return found
 
 
 def model_of(folder: Path) -> str:

@@ -132,7 +132,7 @@ def test_exponent_and_coefficient_from_one_load_and_from_two(tmp_path):
 
 
 def in_any_order(tmp_path, order, backwards):
-    """Calibration of ``V = k p^b t`` by three tests at 4, 9 and 4 MPa, by a closed form for runs."""
+    """Calibration of ``V = k p^b t`` by tests at 4, 9 and 4 MPa, by a closed form for runs."""
     ring = tables()
     ring["wear"]["punch"] |= {"coefficient": "5e-8 1/MPa", "per": "pressure"}
     parameters = {

@@ -85,7 +85,7 @@ REFUSED = {
     "joined cell": (bare().replace("30.8", '"30".8'), "d.csv, line 3: "),
     "unknown column": (bare().replace("\n", ",ok\n").replace("ok", "Note", 1), "column 'Note'; kn"),
     "preamble": ("Tribometer 3.1\n" + bare(), "column 'Tribometer 3.1'; known: x [mm]"),
-    "numbered rows": (",".join(["", bare()]).replace("\n", "\n0,", 4), "found the column ''"),
+    "numbered rows": (f",{bare()}".replace("\n", "\n0,", 4), "found the column ''"),
     "units in a row": ("time,friction_torque\ns,kN m\n5,3\n", "time: unit missing; write time [s]"),
     "a product": (bare().replace("kN m", "kNm"), "must be in N m; a product has a space, as in kN"),
     "another encoding": (bare().replace("kN m", "°").encode("latin1"), "is not text in UTF-8; sav"),
@@ -137,22 +137,22 @@ def mutated(draw: np.random.Generator) -> bytes:
     """Content with one to three changes of bytes, cells, rows or columns."""
     data = (TEXT if draw.random() < 0.5 else bare()).encode()
     for _ in range(draw.integers(1, 4)):
-        at, marks = int(draw.integers(len(data) + 1)), b',;\t\n\r"#.eE-+ 0[]()\x00\xff%\''
+        at, marks = int(draw.integers(len(data) + 1)), b",;\t\n\r\"#.eE-+ 0[]()\x00\xff%'"
         mark = bytes([marks[draw.integers(len(marks))]])
         lines = data.split(b"\n")
         row, other = (int(k) for k in draw.integers(len(lines), size=2))
         data = [
-            lambda data, at, mark, *_: data[:at] + mark + data[at:],
-            lambda data, at, *_: data[:at] + data[at + 1 :],
-            lambda data, at, mark, *_: data[:at] + mark + data[at + 1 :],
-            lambda data, at, *_: data[:at],
-            lambda data, at, mark, *_: data.replace(b",", mark),
-            lambda data, at, mark, *_: data.replace(b".", mark),
-            lambda data, *_: b"\n".join([*lines[:row], lines[other], *lines[row + 1 :]]),
-            lambda data, *_: b"\n".join([*lines[:row], *lines[row + 1 :]]),
-            lambda data, *_: data.decode("latin1").encode("utf-16"),
-            lambda data, *_: data.replace(b"[", b"(").replace(b"kN", b"MN"),
-        ][draw.integers(10)](data, at, mark)
+            data[:at] + mark + data[at:],
+            data[:at] + data[at + 1 :],
+            data[:at] + mark + data[at + 1 :],
+            data[:at],
+            data.replace(b",", mark),
+            data.replace(b".", mark),
+            b"\n".join([*lines[:row], lines[other], *lines[row + 1 :]]),
+            b"\n".join([*lines[:row], *lines[row + 1 :]]),
+            data.decode("latin1").encode("utf-16"),
+            data.replace(b"[", b"(").replace(b"kN", b"MN"),
+        ][draw.integers(10)]
     return data
 
 

@@ -184,7 +184,8 @@ class _Distribution:
             future.cancel()
         self._executor.shutdown(wait=True)  # that of Dask cannot cancel
         for future, (_, tasks) in self._running.items():
-            with suppress(KeyboardInterrupt, UnwritableError):  # of a call that returned nothing; others did
+            # of a call that returned nothing; others did
+            with suppress(KeyboardInterrupt, UnwritableError):
                 if not future.cancelled() and (done := _result(future, tasks)) is not None:
                     _report(done, self._received)
 

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal, Required, TypedDict
 
 import numpy as np
 import tomli_w
+from pydantic import Strict, TypeAdapter, ValidationError
 
 from ..files import read_object, write_text, writing
 from ..folder import finite, write_json
+from ..study.tables import read_cells
 from ..tables import write_csv
 from ..variants.folder import BatchFolder, is_final, numbers_in
 
@@ -27,6 +28,51 @@ PICTURES = {
 }
 """Pictures with their captions."""
 _JOURNAL = "runs.jsonl"
+_WORDS = {"observation", "quantity"}
+_COLUMNS = _WORDS | {"observed", "deviation", "predicted", "lower", "upper", "weighted_residual"}
+_Number = Annotated[float | None, Strict()]
+
+
+class _Parameter(TypedDict):
+    """Parameter in the record; numbers that are not finite are null."""
+
+    key: str | None
+    unit: str
+    value: Annotated[float, Strict()]
+    interval: tuple[_Number, _Number]
+    standard_error: _Number
+    scale: Literal["linear", "log"]
+    lower: Annotated[float, Strict()]
+    upper: Annotated[float, Strict()]
+    internal: Annotated[float, Strict()]
+    internal_scale: Annotated[float, Strict()]
+
+
+class _Combination(TypedDict):
+    """Combination of parameters in the record."""
+
+    text: str
+    deviation: _Number
+
+
+class _Record(TypedDict, total=False):
+    """What pictures and the report need of the record."""
+
+    planned: bool
+    confidence: Required[Annotated[float, Strict()]]
+    parameters: Required[dict[str, _Parameter]]
+    covariance: Required[list[list[_Number]]]
+    correlation: Required[list[list[_Number]]]
+    combinations: list[_Combination]
+    notes: list[str]
+    reduced_chi2: _Number
+    p_value: _Number
+    degrees_of_freedom: _Number
+    runs: _Number
+    seconds: _Number
+
+
+_RECORD = TypeAdapter(_Record)
 
 
 @dataclass(frozen=True)
@@ -141,7 +187,7 @@ class CalibrationFolder(BatchFolder):
             (self.path / self.JOURNAL).unlink(missing_ok=True)
 
     def abandon(self) -> None:
-        """Remove the files of a calibration whose case or data prove invalid, unless it has runs."""
+        """Remove the files of a calibration whose data prove invalid, unless it has runs."""
         if (self.path / self.JOURNAL).is_file():
             self.close("failed", "the case proved invalid during the search")
             return
@@ -168,11 +214,45 @@ def read_calibration(folder: Path) -> tuple[dict[str, Any], list[dict[str, str]]
     record, path = read_object(folder / RECORD), folder / OBSERVATIONS
     if record is None or not path.is_file():
         raise ValueError(f"{folder}: contains no finished calibration")
-    with path.open(encoding="utf-8", newline="") as file:
-        return record, list(csv.DictReader(file))
+    try:
+        _RECORD.validate_python(record)
+    except ValidationError as error:
+        fault = error.errors()[0]
+        where = ".".join(map(str, fault["loc"]))
+        raise ValueError(f"{folder / RECORD}: is damaged: {where}: {fault['msg']}") from None
+    sizes = {len(row) for row in [*record["covariance"], *record["correlation"]]}
+    sizes |= {len(record[name]) for name in ("covariance", "correlation", "parameters")}
+    if len(sizes) != 1:
+        raise ValueError(f"{folder / RECORD}: is damaged: needs as many rows as parameters")
+    return record, _observations(path)
 
 
-def read_posterior(folder: Path) -> np.ndarray | None:
-    """Sample of the posterior distribution (n, p); None without one."""
+def _observations(path: Path) -> list[dict[str, str]]:
+    """Rows of the observations, whose cells but the first two are numbers."""
+    rows = read_cells(path)
+    if not rows or not rows[0].keys() >= _COLUMNS:
+        raise ValueError(f"{path}: has no rows with the columns {', '.join(sorted(_COLUMNS))}")
+    try:
+        for row in rows:
+            for name in row.keys() - _WORDS:
+                float(row[name])
+    except ValueError:
+        raise ValueError(f"{path}: {name}: found {row[name]!r}; must be a number") from None
+    return rows
+
+
+def read_posterior(folder: Path, count: int) -> np.ndarray | None:
+    """Sample of the posterior distribution of some parameters (n, count); None without one.
+
+    Raises
+    ------
+    ValueError
+        If the file is no such table.
+    """
     path = folder / POSTERIOR
-    return np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2) if path.is_file() else None
+    if not path.is_file():
+        return None
+    sample = np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
+    if sample.shape[1] != count or not len(sample):
+        raise ValueError(f"{path}: must have a column for each of {count} parameters")
+    return sample

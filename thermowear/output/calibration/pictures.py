@@ -46,7 +46,8 @@ def draw_calibration(folder: Path) -> list[str]:
     known = [k for k, one in enumerate(record["parameters"].values()) if _is_known(one)]
     if not known:
         return ["no picture of the parameters: the data determine none of them"]
-    _draw_parameters(record, known, read_posterior(folder), folder / "parameters.png")
+    sample = read_posterior(folder, len(record["parameters"]))
+    _draw_parameters(record, known, sample, folder / "parameters.png")
     return []
 
 

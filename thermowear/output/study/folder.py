@@ -62,7 +62,8 @@ class StudyFolder(VariantsFolder):
         resume: bool = False,
     ):
         self.curves: dict[int, Curves] = {}
-        super().__init__(path, headers, cells, {"study": about, "bands": []}, checksum, overwrite, resume)
+        about = {"study": about, "bands": []}
+        super().__init__(path, headers, cells, about, checksum, overwrite, resume)
         write_text(path / CASE, tomli_w.dumps(case))
 
     def announce_bands(self, names: Sequence[str]) -> None:

@@ -12,7 +12,7 @@ from ...results.quantity import Quantity, multiple
 from ..files import model_of, read_object
 from ..variants.numbers import quantity_at
 from ..variants.units import in_pictures
-from .tables import QUANTILES, SAMPLE, SOBOL, TORNADO, read_cells
+from .tables import COLUMNS, QUANTILES, SAMPLE, SOBOL, TORNADO, read_cells
 
 _MAIN = (
     *("max_pressure_Pa", "shape_range_m", "max_temperature_K", "peak_temperature_K"),
@@ -119,12 +119,17 @@ def read_study(folder: Path) -> StudyRecord:
     settings = (read_object(folder / "run.json") or {}).get("study")
     if not isinstance(settings, dict):
         raise ValueError(f"{folder}: contains no study")
-    tables = (read_cells(folder / name) for name in (QUANTILES, "study.csv", TORNADO, SOBOL))
+    names = (QUANTILES, "study.csv", TORNADO, SOBOL)
+    tables = (read_cells(folder / name, COLUMNS[name]) for name in names)
     quantiles, variants, swings, indices = tables
+    pairs = {(row["output"], row["input"]) for row in indices}
+    outputs, inputs = ({pair[k] for pair in pairs} for k in (0, 1))
+    if len(pairs) != len(outputs) * len(inputs):
+        raise ValueError(f"{folder / SOBOL}: needs a row for each output and input")
     try:
         rows = [row for row in variants if row["status"] == "done" and row["part"] in SAMPLE]
-        outputs = [row["output"] for row in quantiles]
-        sample = {name: np.array([float(row[name]) for row in rows]) for name in outputs}
+        told = [row["output"] for row in quantiles]
+        sample = {name: np.array([float(row[name]) for row in rows]) for name in told}
     except (KeyError, ValueError) as error:
         raise ValueError(f"{folder}: study.csv and {QUANTILES} are not of one study") from error
     return StudyRecord(folder, settings, sample, quantiles, indices, swings, model_of(folder))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,16 @@ from ...inference import SampleQuantiles, SobolIndices, Swings
 from ..tables import write_csv
 
 QUANTILES, SOBOL, TORNADO, BANDS = "quantiles.csv", "sobol.csv", "tornado.csv", "bands_"
+COLUMNS = {
+    QUANTILES: ("output", "2.5%", "50%", "97.5%"),
+    TORNADO: ("output", "input", "output_at_medians", "output_at_low", "output_at_high"),
+    SOBOL: (
+        *("output", "input", "first_order", "first_order_lower", "first_order_upper"),
+        *("total", "total_lower", "total_upper"),
+    ),
+    "study.csv": ("status", "part"),
+}
+"""Columns that pictures and the report need, by table."""
 SAMPLE = ("sample", "A", "B")
 """Parts of the design that are an independent sample of all inputs."""
 
@@ -74,13 +84,13 @@ def bands_file(stem: str) -> str:
     return f"{BANDS}{stem}.csv"
 
 
-def read_cells(path: Path) -> list[dict[str, str]]:
-    """Rows of a table of a study as text; empty if it was not written.
+def read_cells(path: Path, columns: Collection[str] = ()) -> list[dict[str, str]]:
+    """Rows of a table as text; empty if it was not written.
 
     Raises
     ------
     ValueError
-        If rows are incomplete, or the file is no text.
+        If rows are incomplete, any of some columns is missing, or the file is no text.
     """
     if not path.is_file():
         return []
@@ -88,6 +98,9 @@ def read_cells(path: Path) -> list[dict[str, str]]:
         rows = list(csv.DictReader(file))
     if any(None in row or None in row.values() for row in rows):
         raise ValueError(f"{path}: has rows that are not as long as its header")
+    missing = [name for name in columns if rows and name not in rows[0]]
+    if missing:
+        raise ValueError(f"{path}: has no column {missing[0]}")
     return rows
 
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import csv
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -16,6 +16,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
+from ..files import read_object
 from .keys import Axis, axis
 
 LINES = ("-", "--", "-.", ":")
@@ -69,7 +70,9 @@ def read_sweep(folder: Path) -> VariantRecord:
     ValueError
         If the folder contains no sweep.
     """
-    over = json.loads((folder / "run.json").read_text("utf-8"))["over"]
+    over = (read_object(folder / "run.json") or {}).get("over")
+    if not isinstance(over, dict) or not all(map(_is_list_of_words, over.values())):
+        raise ValueError(f"{folder / 'run.json'}: is damaged: over: must be lists of values")
     with (folder / "sweep.csv").open(encoding="utf-8", newline="") as file:
         header, *rows = csv.reader(file)
     try:
@@ -88,6 +91,10 @@ def read_sweep(folder: Path) -> VariantRecord:
         return VariantRecord(axes, indices[np.array(variants, dtype=int) - 1], folders, numbers)
     except (IndexError, KeyError, ValueError) as error:
         raise ValueError(f"{folder}: run.json and sweep.csv are not of the same sweep") from error
+
+
+def _is_list_of_words(values: Any) -> bool:
+    return isinstance(values, list) and all(isinstance(value, str) for value in values)
 
 
 def _different(rows: list[list[str]], column: int, place: np.ndarray) -> Sequence[float | str]:

@@ -162,6 +162,53 @@ def test_a_damaged_journal_of_a_search(damaged, capsys):
     assert "runs.jsonl, line 1: is damaged" in line
 
 
+DAMAGED = {
+    "observations.csv": (
+        *("", "observation,quantity,observed\nscar,wear_volume_1_m3,1\n", "a;b\n1;2\n"),
+        lambda text: text[: len(text) // 2],
+        lambda text: text.replace(",", ",x", 9),
+    ),
+    "calibration.json": (
+        *("1", "null", "{}", "[]", '{"confidence": 0.95, "parameters": {"k": {}}}'),
+        lambda text: text.replace('"scale": "log"', '"scale": 1'),
+        lambda text: text.replace('"confidence": 0.95', '"confidence": null'),
+        lambda text: text.replace('"notes": [', '"notes": [1, '),
+        lambda text: text.replace('"parameters": {', '"parameters": {}, "others": {'),
+    ),
+    "case.resolved.toml": ("title =",),
+    "summary.json": ("1", "null"),
+}
+
+
+def test_damaged_folders(capsys):
+    """requirement: `plot` and `report` of damaged files: the file or folder in one line."""
+    volumes(Path("scar.csv"), truth(), 0.02)
+    case = write_case(parameters={"k": WEAR})
+    assert main(["calibrate", case, "--data", "scar.csv", "-o", "c", "--no-pictures"]) == 0
+    for name, contents in DAMAGED.items():
+        path = Path("c", name)
+        whole = path.read_text() if path.is_file() else None
+        for content in contents:
+            path.write_text(content if isinstance(content, str) else content(whole))
+            assert path.read_text() != whole, (name, content)
+            for command in ("plot", "report"):
+                capsys.readouterr()
+                code, told = main([command, "c"]), capsys.readouterr().err.splitlines()
+                read = command == "report" or name in ("observations.csv", "calibration.json")
+                if read and name != "summary.json":  # others have none
+                    assert code == 1, (name, content, command)
+                    assert len(told) == 1
+                    assert told[0].startswith("error: ")
+        path.unlink() if whole is None else path.write_text(whole)
+    Path("r").mkdir()
+    for content in ("1", "null", "[]"):  # of a run
+        Path("r/summary.json").write_text(content)
+        for command in ("plot", "report"):
+            assert main([command, "r"]) == 1
+            (line,) = capsys.readouterr().err.splitlines()
+            assert line.startswith("error: ")
+
+
 def test_plan(capsys):
     """requirement: `--plan` prints the errors to be expected, of each measurement alone, too."""
     volumes(Path("scar.csv"), truth())

@@ -104,7 +104,8 @@ def quantiles(values: np.ndarray, levels: Sequence[float], stratified: bool) -> 
     """
     found = np.full((len(levels), values.shape[1]), np.nan, dtype=values.dtype)
     for columns, kept in _by_count(values):
-        rule = "hazen" if stratified and kept.shape[1] == len(values) else INDEPENDENT
+        complete = stratified and kept.shape[1] == len(values)
+        rule: Literal["hazen", "weibull"] = "hazen" if complete else INDEPENDENT
         found[:, columns] = np.quantile(kept, levels, axis=1, method=rule)
     return found
 

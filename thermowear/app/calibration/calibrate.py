@@ -83,7 +83,7 @@ def problem_of(
 
 
 def described_data(case: AnyCase) -> list[str]:
-    """What the data files of a case contain, once they and its first values were checked.
+    """Content of the data files of a case, once they and its first values were checked.
 
     Observations whose files are named by the command are left out.
 
@@ -137,10 +137,12 @@ class _Runner:
 
         def received(outcome: Prediction | Lost) -> None:
             if isinstance(outcome, Lost):
-                outcome = outcome.task.failed(outcome.reason)
+                prediction: Prediction = outcome.task.failed(outcome.reason)
+            else:
+                prediction = outcome
             if self._folder is not None:
-                self._folder.add(_key(runs[outcome.number]), _stored(outcome))
-            found.append(outcome)
+                self._folder.add(_key(runs[prediction.number]), _stored(prediction))
+            found.append(prediction)
 
         left = [group for group in left if group]
         compute(left, predict, received, self._executor, self._workers, self._series)
@@ -167,8 +169,9 @@ def _key(run: CandidateRun) -> str:
 
 def _stored(found: Prediction) -> StoredRun:
     status = f"{_FAILED}{found.failure}" if found.failure else "done"
-    values = [] if found.failure else found.values.tolist()
-    return StoredRun(status, found.numbers, values, list(found.steps), found.distances.tolist())
+    values = [] if found.failure else list(map(float, found.values))
+    distances = list(map(float, found.distances))
+    return StoredRun(status, found.numbers, values, list(found.steps), distances)
 
 
 def _files(case: AnyCase, data) -> dict[str, Path]:

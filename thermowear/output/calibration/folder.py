@@ -56,7 +56,7 @@ class _Combination(TypedDict):
 
 
 class _Record(TypedDict, total=False):
-    """What pictures and the report need of the record."""
+    """Record, as far as pictures and the report need it."""
 
     planned: bool
     confidence: Required[Annotated[float, Strict()]]
@@ -148,7 +148,10 @@ class CalibrationFolder(BatchFolder):
         key, status = line.pop("key"), line["status"]
         if type(key) is not str or type(status) is not str:
             raise TypeError("not a run")
-        columns = {name: list(map(float, line[name])) for name in ("values", "steps", "distances")}
+        columns = {
+            name: [float("nan") if number is None else float(number) for number in line[name]]
+            for name in ("values", "steps", "distances")
+        }
         if is_final(status):
             self._runs[key] = StoredRun(status, numbers_in(line["numbers"]), **columns)
 

@@ -269,13 +269,13 @@ class VariantsFolder(BatchFolder):
             with writing():
                 self._write_table()
 
-    def close(self, status: str, message: str = "", seconds: float = 0.0) -> None:
+    def close(self, status: str, message: str = "", seconds: float = 0.0, **more: Any) -> None:
         """Record how the command ended, see `BatchFolder`, and its wall time [s]."""
         try:
             with writing():
                 self._write_table()
         finally:
-            super().close(status, message, seconds=round(seconds, 4))
+            super().close(status, message, seconds=round(seconds, 4), **more)
 
     def restored(self, line: dict[str, Any]) -> None:
         """Take over more entries of a line of the journal."""

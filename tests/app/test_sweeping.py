@@ -15,7 +15,6 @@ import pytest
 
 import thermowear as tw
 from thermowear.app.cli import main
-from thermowear.errors import CaseError
 from thermowear.output import tables
 from thermowear.output.folder import ResultsFolder
 
@@ -109,7 +108,7 @@ def test_one_variant_fails(capsys):
     assert Path("s/shapes.png").is_file()
 
 
-@pytest.mark.parametrize("broken", ["__init__", "finish", "close"])
+@pytest.mark.parametrize("broken", ["describe", "finish", "_write_run"])
 def test_a_full_disk_ends_a_sweep_and_fails_no_variant(broken, monkeypatch, capsys):
     """requirement: it stops at the first write that fails; --resume computes what is left."""
     words = ["sweep", LEVER, *SMALL, "--over", "contact.friction=0.1,0.2,0.3", "-o", "s"]
@@ -119,8 +118,7 @@ def test_a_full_disk_ends_a_sweep_and_fails_no_variant(broken, monkeypatch, caps
     def fails(self, *given, **more):
         works(self, *given, **more)
         if self.path.name == "002":
-            error = OSError(28, "No space left on device")
-            raise CaseError(f"-o {self.path}: {error}") if broken == "__init__" else error
+            raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patched:
         patched.setattr(ResultsFolder, broken, fails)

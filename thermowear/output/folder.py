@@ -83,9 +83,13 @@ class ResultsFolder:
         try:
             path.mkdir(parents=True, exist_ok=True)
             self._lock = Lock(path)
-            self._claim(overwrite)
-            self._write_run()
-            self.describe(tables)
+            try:
+                self._claim(overwrite)
+                self._write_run()
+                self.describe(tables)
+            except BaseException:
+                self._lock.release()
+                raise
         except OSError as error:
             raise CaseError(f"-o {path}: cannot be written: {error.strerror}") from None
 
@@ -164,8 +168,10 @@ class ResultsFolder:
     def close(self, status: str, message: str = "") -> None:
         """Record how the run ended: ``done``, ``failed`` or ``interrupted``."""
         self._run |= run_ended(status, message)
-        self._write_run()
-        self._lock.release()
+        try:
+            self._write_run()
+        finally:
+            self._lock.release()
 
     def abandon(self) -> None:
         """Remove the files of a run whose case proves invalid before anything is computed.

@@ -173,3 +173,86 @@ def test_in_space():
     pressed = i.pressure > 0
     np.testing.assert_allclose(jump[pressed] * 1e4, i.heat_flux_2[pressed], rtol=1e-6)
     assert result.summary["heat_balance_relative_error"] < 1e-10
+
+
+SIDES = {f"heat.temperature.{s}": "140 degC" for s in ("upper_side", "lower_side")}
+ALL_ROUND = SIDES | {f"heat.temperature.{s}": "140 degC" for s in ("upper_top", "lower_bottom")}
+WARM_SIDES = 413.15
+STORING = {
+    f"bodies.{body}.{key}": value
+    for body in ("upper", "lower")
+    for key, value in (("density", "7800 kg/m^3"), ("specific_heat", "470 J/(kg K)"))
+}
+TIMED = {
+    "heat.transient": True,
+    "heat.initial": "140 degC",
+    "analysis": {"type": "transient", "end_time": "2 s", "tolerance": 1e-4},
+}
+
+
+@pytest.mark.parametrize("law", ["constant", "perfect"])
+@pytest.mark.parametrize("degree, timed", [(1, False), (2, False), (8, False), (2, True)])
+def test_surfaces_at_a_temperature_may_end_at_the_contact(degree, law, timed):
+    """requirement: all sides at 140 degC: so are the bodies, by any degree and conductance."""
+    changes = LAWS[law][0] | ALL_ROUND | {"mesh.degree": degree, "mesh.elements": 4}
+    if timed:
+        changes = STORING | TIMED | changes
+    result = solved(BLOCKS, REST | changes)
+    i = result.interface
+    assert not result.stopped
+    for temperature in (i.temperature_1, i.temperature_2):
+        np.testing.assert_allclose(temperature, WARM_SIDES, rtol=0.0, atol=1e-7)
+    np.testing.assert_allclose(result.fields.temperature, WARM_SIDES, rtol=1e-6)
+    assert result.summary["heat_balance_relative_error"] < 1e-6
+
+
+def test_warm_bodies_whose_conductivity_changes():
+    """requirement: heat balances where none flows, to what Newton's method leaves."""
+    half = {"at": ["20 degC", "1020 degC"], "factor": [1.0, 0.5]}
+    result = solved(BLOCKS, REST | ALL_ROUND | {"bodies.lower.conductivity_factor": half})
+    np.testing.assert_allclose(result.interface.temperature_2, WARM_SIDES, rtol=0.0, atol=1e-7)
+    assert result.summary["heat_balance_relative_error"] < 1e-7
+
+
+def test_warm_sides_between_cold_ends():
+    """
+    requirement: halves of a bar, sides warm, ends cold: the series of Fourier in the middle plane,
+    at any conductance, as no heat crosses it.
+    """
+    equal = {"geometry.lower_height": "10 mm", "bodies.lower.conductivity": "50 W/(m K)"}
+    fine = {"mesh.degree": 6, "mesh.elements": 8}
+    for law in ("constant", "perfect"):
+        i = solved(BLOCKS, REST | LAWS[law][0] | SIDES | equal | fine).interface
+        middle, n = i.x - 0.005, np.arange(1, 80, 2)[:, None]
+        sign = 4 / (n * pi) * (-1.0) ** ((n - 1) // 2)
+        exact = sign * np.cosh(n * pi * middle / 0.02) / np.cosh(n * pi * 0.005 / 0.02)
+        inside = np.abs(middle) < 0.0045  # the series converges slowly at the warm sides
+        for temperature in (i.temperature_1, i.temperature_2):
+            expected = COLD + (WARM_SIDES - COLD) * exact.sum(axis=0)
+            np.testing.assert_allclose(temperature[inside], expected[inside], rtol=0.0, atol=0.05)
+
+
+def test_a_sliding_block_with_sides_at_a_temperature():
+    """requirement: friction heat leaves through the sides and ends; the balance closes."""
+    result = solved(BLOCKS, COARSE | {k: "60 degC" for k in SIDES})
+    assert result.summary["friction_power_W"] == pytest.approx(10.0)
+    assert result.summary["heat_balance_relative_error"] < 1e-10
+    assert result.fields.temperature.min() > COLD - 1e-3
+
+
+@pytest.mark.parametrize("solver", ["direct", "multigrid"])
+@pytest.mark.parametrize("conductance", ["1e4 W/(m^2 K)", GONE])
+def test_sides_at_a_temperature_in_space(solver, conductance):
+    """requirement: the same in 3d, also where bodies are solved for each state of the contact."""
+    materials = {"conductivity": "50 W/(m K)", "expansion": "1.2e-5 1/K"}
+    changes = {f"bodies.punch.{key}": value for key, value in materials.items()}
+    surfaces = "punch_sides", "block_sides", "block_top", "punch_top", "block_bottom"
+    heat = {"temperature": dict.fromkeys(surfaces, "140 degC")}
+    if conductance is not GONE:
+        heat["conductance"] = conductance
+    small = {"mesh.elements": 2, "mesh.solver": solver, "heat": heat, "holder": GONE}
+    result = solved(BOX, REST | changes | small | {"load": {"mean_pressure": "5 MPa"}})
+    i = result.interface
+    for temperature in (i.temperature_1, i.temperature_2):
+        np.testing.assert_allclose(temperature, WARM_SIDES, rtol=0.0, atol=1e-6)
+    np.testing.assert_allclose(result.fields.temperature, WARM_SIDES, rtol=1e-6)

@@ -281,8 +281,10 @@ class Conduction:
 
     @cached_property
     def _from_prescribed(self) -> np.ndarray:
-        """Nodal heat of the prescribed temperatures alone [W]. Every rank calls."""
-        return multiply(self.conductivity, self.prescribed)
+        """Nodal heat of the prescribed temperatures alone, into the bath too, which is part of the
+        solver where surfaces with prescribed temperatures meet a contact face [W]; collective.
+        """
+        return multiply(self.conductivity, self.prescribed) + multiply(self.bath, self.prescribed)
 
     @cached_property
     def _has_prescribed(self) -> bool:

@@ -28,6 +28,8 @@ from ..spaces import Spaces, block_diagonal
 from .conduction import Conduction
 from .heat_equation import ThermalMaterial, conducting
 
+_NEWTON = 1e3
+"""Size of the flows that Newton's method leaves, relative to rounding errors."""
 _SAME_PATTERN = PETSc.Mat.Structure.SAME_NONZERO_PATTERN
 
 
@@ -125,6 +127,9 @@ class VaryingConduction(Conduction):
     def linearisation_error(self, rise: np.ndarray, reference: np.ndarray) -> np.ndarray:
         tangents = ((p.matrix, p.slope(reference) * rise - p.excess(rise)) for p in self.parts)
         return _products(len(rise), tangents)
+
+    def balance_scale(self, rise: np.ndarray) -> float:
+        return _NEWTON * super().balance_scale(rise)
 
     def losses(self, rise, heat, ambient=0.0):
         return super().losses(rise, heat + self._excess_flow(rise), ambient)

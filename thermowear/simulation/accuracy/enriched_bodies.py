@@ -221,8 +221,9 @@ def _levelled(rises: np.ndarray, own: np.ndarray, conductance: np.ndarray) -> np
     Approximation: each point has a resistance of its own in either body, shape (2, n) [m² K/W].
     """
     with np.errstate(divide="ignore"):
-        flux = (rises[1] - rises[0]) / (own.sum(axis=0) + 1 / conductance)
-    return rises + own * flux * np.array([[1.0], [-1.0]])
+        resistance = own.sum(axis=0) + 1 / conductance  # none where both temperatures are given
+    share = np.divide(own, resistance, out=np.zeros_like(own), where=resistance > 0.0)
+    return rises + share * (rises[1] - rises[0]) * np.array([[1.0], [-1.0]])
 
 
 def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedProblem:

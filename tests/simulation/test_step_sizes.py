@@ -3,23 +3,27 @@
 import math
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from thermowear.model.analyses import TransientAnalysis
 from thermowear.simulation.time import time_loop
+from thermowear.simulation.time.given_steps import times_to_hit
 from thermowear.simulation.time.time_loop import AnySize, FewSizes, ends, moments, next_step
 
 
-def walk(sizes, times, wanted):
+def walk(sizes, times, wanted, time=0.0, begin=0.0):
     """Steps that a run takes which would like such a step at a time."""
-    time, begin, steps = 0.0, 0.0, []
+    steps = []
     for end in times:
         while time < end:
+            begin = sizes.begin(time, begin, end)
             step = sizes.at_most(wanted(time), time, begin, end)
             assert 0 < step <= wanted(time) * (1 + 1e-9)
             steps.append(step)
-            time = end if ends(step, end - time) else time + step
+            time = end if ends(step, end - time, end) else time + step
             assert time <= end
+            assert len(steps) < 5000
         begin = end
     return steps
 
@@ -46,6 +50,47 @@ def test_odd_times_have_sizes_of_their_own():
     steps = walk(FewSizes(times), times, growing)
     assert min(steps) > 1e-5
     assert len(steps) < 60
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_any_times_are_hit(seed):
+    """
+    requirement: random times to the millisecond, in minutes, or any: all are hit by steps hardly
+    more than with one end, of few sizes for each interval; so from any of them on.
+    """
+    random = np.random.default_rng(seed)
+    end, count = 10 ** random.uniform(-1, 4), random.integers(1, 8)
+    rounded = [lambda t: np.round(t, 3), lambda t: np.round(t / 60, 2) * 60, lambda t: t]
+    times = np.unique(rounded[seed % 3](random.uniform(0.2, 1, count) * end))
+    times = [float(t) for t in times if t > 0] or [0.737]
+    sizes = FewSizes(times)
+    steps = walk(sizes, times, growing)
+    alone = walk(FewSizes(times[-1:]), times[-1:], growing)
+    assert len(steps) <= 2 * len(alone) + 8 * len(times)
+    assert len(set(steps)) <= len(set(alone)) + 8 * len(times)
+    start = random.uniform(0, 1) * times[0]  # of a run that is continued with other times
+    for begin in (0.0, start):
+        assert len(walk(FewSizes(times), times, growing, start, begin)) <= len(steps) + 50
+    assert sizes.begin(steps[0], 0.0, times[0]) == 0.0
+
+
+def test_times_to_the_millisecond_share_their_sizes():
+    """requirement: the largest common measure, to the last bits, by which all steps are made."""
+    for unit, times in (
+        (0.1, (0.1, 0.2, 0.30000000000000004, 4.0)),
+        (0.001, (0.736, 2.0)),
+        (0.713, (0.713, 0.713 + 0.713, 3 * 0.713)),
+    ):
+        sizes = set(walk(FewSizes(times), times, lambda time: 0.1))
+        powers = np.log2(sorted(sizes)) - np.log2(unit)
+        np.testing.assert_allclose(powers, np.round(powers), rtol=0.0, atol=1e-9)
+
+
+def test_times_that_rounding_tells_apart_are_one():
+    """requirement: an output time and a kink, an end and the last of many periods."""
+    settings = TransientAnalysis(end_time=0.9, output_times=(0.3, 0.6), tolerance=1e-3)
+    problem = SimpleNamespace(corners=lambda end: (0.1 + 0.2, 0.1 * 3 * 2, 0.7, 0.3 * 3))
+    assert times_to_hit(settings, problem) == [0.3, 0.6, 0.7, 0.9]
 
 
 def test_few_steps_are_added():

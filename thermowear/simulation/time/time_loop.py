@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
-from functools import partial, reduce
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -22,7 +22,7 @@ from ..interface.sdirk import (
     advance_with_error,
     advance_without_error,
 )
-from .given_steps import require_valid, times_to_hit
+from .given_steps import ROUNDED, is_same, require_valid, times_to_hit
 from .moment import Moment
 
 _FAR_SMALLER = 1e-3
@@ -30,6 +30,8 @@ _FAR_SMALLER = 1e-3
 _SMALLEST = 1e-12  # relative to the elapsed time; at the start to 1e-12 s
 _HIT = 1e-9
 """Distance to a target time, relative to the time left, at which a step is taken to end there."""
+_ON_GRID = 1e3
+"""Least step on the grid of steps, relative to the rounding of times: no other time lies there."""
 _FEW = 5
 """Largest number of powers of two that make up an interval; bounds the number of small steps."""
 _ROUNDING, _STILL = 1e-9, 20
@@ -63,6 +65,10 @@ class StepSizes(ABC):
         """Size of an earlier step between begin and end, without the rounding of its times [s]."""
         return step
 
+    def begin(self, time: float, begin: float, end: float) -> float:
+        """Time from which steps count that lead from a time after begin to an end [s]."""
+        return begin
+
 
 class AnySize(StepSizes):
     """Largest admissible steps that do not leave a tiny last one."""
@@ -88,40 +94,66 @@ class FewSizes(StepSizes):
 
     def __init__(self, times: Iterable[float]):
         super().__init__()
-        self._measure = reduce(_common_measure, (t for t in times if t < math.inf), 0.0)
+        self._measure = _common_measure(sorted(t for t in times if 0.0 < t < math.inf))
 
     def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
-        unit, passed = self._unit(end - begin), time - begin
-        wanted = min(wanted, self.largest, end - time)
-        size = unit * 2.0 ** math.floor(math.log2(wanted / unit) + _HIT)
-        while abs(math.remainder(passed, size)) > 1e-3 * size:
-            size /= 2
-        return size
+        wanted = min(wanted, self.largest, end - time + _rounding(end))
+        return _on_grid(wanted, self._unit(begin, end), begin, time)
 
     def nominal(self, step: float, begin: float, end: float) -> float:
-        unit = self._unit(end - begin)
+        unit = self._unit(begin, end)
         size = unit * 2.0 ** round(math.log2(step / unit))
-        return size if abs(size - step) <= _HIT * step else step
+        return size if abs(size - step) <= _HIT * step + _rounding(end) else step
 
-    def _unit(self, interval: float) -> float:
+    def begin(self, time: float, begin: float, end: float) -> float:
+        passed = time - begin
+        on_grid = passed <= 0 or _on_grid(passed, self._unit(begin, end), begin, time) > (
+            _ON_GRID * ROUNDED * time
+        )
+        return begin if on_grid else time
+
+    def _unit(self, begin: float, end: float) -> float:
         """Unit of the step sizes: common measure of all times, or the interval if too fine [s]."""
-        measure = self._measure or 1.0
-        if interval == math.inf or round(interval / measure).bit_count() <= _FEW:
-            return measure
-        return interval
+        interval, measure = end - begin, self._measure
+        if interval == math.inf:
+            return measure or 1.0
+        count = round(interval / measure) if measure else 0
+        fits = count > 0 and abs(count * measure - interval) <= _rounding(end)
+        return measure if fits and count.bit_count() <= _FEW else interval
 
 
-def ends(step: float, left: float) -> bool:
-    """Test whether a step covers the time left, up to rounding [s]."""
-    return step >= left * (1 - _HIT)
+def ends(step: float, left: float, end: float = 0.0) -> bool:
+    """Test whether a step covers the time left, up to rounding of it and of the end [s]."""
+    return step >= left * (1 - _HIT) - _rounding(end)
 
 
-def _common_measure(a: float, b: float) -> float:
-    """Greatest common divisor of two real numbers by Euclid's algorithm, up to rounding."""
-    rounding = _HIT * max(a, b)
-    while b > rounding:
-        a, b = b, abs(math.remainder(a, b))
-    return a
+def _rounding(end: float) -> float:
+    """Rounding of the times up to an end [s]."""
+    return 0.0 if end == math.inf else ROUNDED * end
+
+
+def _on_grid(largest: float, unit: float, begin: float, time: float) -> float:
+    """Largest power-of-two multiple of a unit, a multiple of which lies between two times [s]."""
+    size = unit * 2.0 ** math.floor(math.log2(largest / unit) + _HIT)
+    while abs(math.remainder(time - begin, size)) > ROUNDED * time:
+        size /= 2
+    return size
+
+
+def _common_measure(times: Sequence[float]) -> float:
+    """Time [s] of which all increasing times are multiples up to their rounding; 0 without one.
+
+    By Euclid's algorithm, whose rounding errors the ratio to the last time corrects.
+    """
+    if not times:
+        return 0.0
+    measure, rounding = 0.0, _HIT * times[-1]
+    for time in times:
+        while time > rounding:
+            measure, time = time, abs(math.remainder(measure, time))
+    measure = times[-1] / round(times[-1] / measure)
+    fits = (is_same(time, measure * round(time / measure)) for time in times)
+    return measure if all(fits) else 0.0
 
 
 def next_step(
@@ -178,7 +210,7 @@ def moments(
         last = Moment(0.0, 0.0, state, 0.0, False, distance, 0, 0.0, wanted)
         yield last
     times = times_to_hit(settings, problem)
-    targets = [time for time in times if time > last.time]
+    targets = [time for time in times if time > last.time and not is_same(time, last.time)]
     require_valid(settings, times)
     steps, still = _Steps(problem, settings, steady, sizes), 0
     while not is_over(settings, last):
@@ -205,7 +237,7 @@ def is_over(settings: TimedAnalysis, last: Moment) -> bool:
     if settings.steps:
         return last.number == len(settings.steps)
     end = max((settings.end_time, *settings.output_times))
-    return is_steady(settings, last.distance) or last.time >= end
+    return is_steady(settings, last.distance) or last.time >= end or is_same(last.time, end)
 
 
 def is_steady(settings: TimedAnalysis, distance: float) -> bool:
@@ -225,11 +257,13 @@ class _Steps:
 
     def next(self, target: float, last: Moment) -> Moment:
         """Given step, or one by error control."""
+        last = replace(last, begin=self.sizes.begin(last.time, last.begin, target))
         return (self._given if self.settings.steps else self._controlled)(target, last)
 
     def _given(self, target: float, last: Moment) -> Moment:
         """Given step, without error control, before or up to the target time."""
         time = self.settings.steps[last.number]
+        time = target if is_same(time, target) else time
         step = self.sizes.nominal(time - last.time, last.begin, target)
         try:
             state = advance_without_error(self.problem, last.state, last.time, step)
@@ -245,7 +279,7 @@ class _Steps:
         size = partial(self.sizes.at_most, time=last.time, begin=last.begin, end=target)
         smallest = _SMALLEST * max(last.time, min(_SMALLEST, target))  # a first target may be tiny
         trial, step, following = self._accept(last, size, smallest)
-        hits = ends(step, target - last.time)
+        hits = ends(step, target - last.time, target)
         time = target if hits else last.time + step
         wanted = max(following, last.wanted) if hits else following
         own = {"time": time, "step": step, "error": trial.error, "wanted": wanted}
@@ -255,7 +289,7 @@ class _Steps:
         """Accepted state after the last one, with its own time, step, error and next step."""
         return Moment(
             state=state,
-            is_output=own["time"] in self.settings.output_times,
+            is_output=any(is_same(own["time"], time) for time in self.settings.output_times),
             distance=self.problem.distance(state, self.steady),
             number=last.number + 1,
             begin=target if own["time"] == target else last.begin,

@@ -99,3 +99,15 @@ def test_states_stay_valid(cold):
     again = [np.asarray(state.pressure(face)) for state in kept]
     np.testing.assert_array_equal(before, again)
     assert np.all(np.diff([np.max(state.wear(face, punch)) for state in kept]) > 0)
+
+
+def test_a_hot_march_in_parts():
+    """requirement: in parts to the millisecond, each from the last state: all are reached."""
+    model, _, _ = python_model("disk-brake-stop", "mesh.degree=2", "mesh.elements=3")
+    state = None
+    for end in (0.713, 0.713 + 0.713, 3 * 0.713, 2.5):
+        states = list(model.march(end, start=state, tolerance=1e-2))
+        state = states[-1]
+        assert state.time == pytest.approx(end, rel=1e-9)
+        assert len(states) < 40
+    assert not list(model.march(2.5 + 3e-13, start=state, tolerance=1e-2))

@@ -191,7 +191,7 @@ TIMED = {
 
 
 @pytest.mark.parametrize("law", ["constant", "perfect"])
-@pytest.mark.parametrize("degree, timed", [(1, False), (2, False), (8, False), (2, True)])
+@pytest.mark.parametrize(("degree", "timed"), [(1, False), (2, False), (8, False), (2, True)])
 def test_surfaces_at_a_temperature_may_end_at_the_contact(degree, law, timed):
     """requirement: all sides at 140 degC: so are the bodies, by any degree and conductance."""
     changes = LAWS[law][0] | ALL_ROUND | {"mesh.degree": degree, "mesh.elements": 4}
@@ -234,7 +234,7 @@ def test_warm_sides_between_cold_ends():
 
 def test_a_sliding_block_with_sides_at_a_temperature():
     """requirement: friction heat leaves through the sides and ends; the balance closes."""
-    result = solved(BLOCKS, COARSE | {k: "60 degC" for k in SIDES})
+    result = solved(BLOCKS, COARSE | dict.fromkeys(SIDES, "60 degC"))
     assert result.summary["friction_power_W"] == pytest.approx(10.0)
     assert result.summary["heat_balance_relative_error"] < 1e-10
     assert result.fields.temperature.min() > COLD - 1e-3

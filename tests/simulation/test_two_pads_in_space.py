@@ -154,3 +154,18 @@ def test_what_is_glued_to_the_disk_would_carry_heat(meshes):
     case["bodies"]["disk"] = {k: v for k, v in case["bodies"]["disk"].items() if k != "fixed"}
     with pytest.raises(tw.CaseError, match=r"^heat\.advection: right is glued to disk"):
         tw.run(tw.load(case))
+
+
+def test_a_disk_that_does_not_turn_about_its_axis(meshes):
+    """
+    requirement: heat is carried along by a body of revolution about its axis only: 1 mm off, also
+    in the limit of high speed, and about an axis in place, it is refused in one line.
+    """
+    case = two_pads.tables(meshes[True], True, heat={"advection": "resolved"})
+    off = 'motions.disk.center=["1 mm", "0 mm"]'
+    for overrides in ((off,), (off, "heat.advection=spread")):
+        with pytest.raises(tw.CaseError, match=r"^heat\.advection: 'disk' has a wall at"):
+            tw.run(tw.load(case, overrides))
+    case["motions"]["disk"]["axis"] = {"point": ["0 m"] * 3, "direction": [0.0, 0.1, 1.0]}
+    with pytest.raises(tw.CaseError, match=r"^heat\.advection: is for one moving body that passes"):
+        tw.load(case)

@@ -45,7 +45,8 @@ def validate(chosen) -> int:
         from ..geometry.checks.mesh_checks import described, whole_bodies
 
         properties += described(whole_bodies(case.tagged_mesh(), case.geometry))
-    if case.initial_shapes:
+    carries = case.heat is not None and case.heat.advection != "none"
+    if case.initial_shapes or carries:
         from .batch.computing import start_petsc
 
         start_petsc()

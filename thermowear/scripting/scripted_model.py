@@ -225,6 +225,11 @@ class ScriptedModel:
                 f"Model.kinematics: found {self.kinematics!r}; must be one of "
                 f"{', '.join(_OF_SECTIONS)} for a mesh of a section, and None in space"
             )
+        if self.heat is not None and self.heat.advection != "none" and len(self.motions) > 1:
+            raise CaseError(
+                "Heat.advection: is for one moving body that passes the others; found "
+                f"{len(self.motions)} in Model.motions"
+            )
         thickness = self.thickness
         if thickness is not None:
             thickness = in_python(units.Length, thickness, "Model.thickness")

@@ -2,7 +2,9 @@
 
 The velocity is the curl of a stream function with the nodes of the mesh: it is tangent to curved
 faces whose nodes lie on the path of the body, and divergence-free, so that no heat is lost or
-generated there at any speed.
+generated there at any speed. Where facets are inclined to the path, as those of straight-sided
+fillets are, a gradient in the temperature space makes the velocity tangent (Helmholtz's
+decomposition): the heat of any temperature of that space is then conserved to rounding.
 """
 
 from __future__ import annotations
@@ -15,14 +17,22 @@ from petsc4py import PETSc
 import numpy as np
 import ufl
 from dolfinx import fem
-from dolfinx.mesh import exterior_facet_indices
 
 from ...compat import evaluate, exterior_facet_domain
+from ...parallel import sum_over_ranks
 from ..body_mesh import BodyMesh
-from ..compiled import assembled_matrix, compiled_expression
-from ..field import geometry_space, reference_element
+from ..compiled import assembled_matrix, compiled_expression, nodal_loads
+from ..direct_solver import eliminate, multiply
+from ..field import as_function, geometry_space, owned, reference_element
 from ..kinematics import Kinematics, section_measure
+from ..solver_choice import SolverChoice, linear_solver
+from ..spaces import Spaces
+from .walls import lets_through, outer_facets
 
+_ROUNDING = 1e-6
+"""Rounding of places at the ends of the contact, relative to the body."""
+_TANGENTIAL = 1e-10
+"""Largest flow through walls that rounding explains, relative to that along them."""
 _MAX_RESOLVED_PECLET = 1.0
 """Largest cell Péclet number at which no stabilisation is needed."""
 
@@ -41,12 +51,43 @@ class Passage:
         Velocity along x [m/s], or anticlockwise angular velocity [rad/s].
     spread : bool
         True in the limit of high speed, with uniform temperature along each path.
+    contact : tuple of float
+        Range of x of its contacts, beyond which a body that moves along x ends, by default no
+        points [m].
     """
 
     parts: tuple[str, ...]
     center: tuple[float, float] | None
     speed: float
     spread: bool
+    contact: tuple[float, float] = (np.inf, -np.inf)
+
+    def across(self, points: np.ndarray) -> np.ndarray:
+        """Coordinates across the motion, and zero: radius or y, and z; shape (..., 3) [m]."""
+        result = np.zeros_like(points)
+        x, y, result[..., 1] = np.moveaxis(points, -1, 0)
+        radius = None if self.center is None else np.hypot(x - self.center[0], y - self.center[1])
+        result[..., 0] = y if radius is None else radius
+        return result
+
+    def directions(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Unit vectors of these coordinates at points (n, 3)."""
+        first, second = np.zeros_like(points), np.zeros_like(points)
+        second[:, 2] = 1.0
+        if self.center is None:
+            first[:, 1] = 1.0
+        else:
+            first[:, :2] = points[:, :2] - np.array(self.center)
+            first /= np.maximum(np.linalg.norm(first, axis=1, keepdims=True), 1e-300)
+        return first, second
+
+    def is_end(self, points: np.ndarray, normals: np.ndarray) -> np.ndarray:
+        """Test where outer facets, by midpoints and outward normals (n, 3), are ends of a bar."""
+        if self.center is not None:
+            return np.zeros(len(points), dtype=bool)
+        (low, high), x, slope = self.contact, points[:, 0], normals[:, 0]
+        rounding = _ROUNDING * max(np.ptp(x), 0.0)
+        return ((x >= high - rounding) & (slope > 0)) | ((x <= low + rounding) & (slope < 0))
 
     def stream(self, mesh) -> fem.Function:
         """Stream function ψ with ``v = (∂ψ/∂y, -∂ψ/∂x)``, at unit speed."""
@@ -67,8 +108,9 @@ class Advection:
     Attributes
     ----------
     carried : petsc4py.PETSc.Mat
-        Matrix of the advected heat: its row sums times the rise give the heat that leaves with the
-        body [W/K]. Entering material is at ambient temperature.
+        Matrix of the advected heat [W/K]. Entering material is at ambient temperature.
+    outflow : ndarray, shape (n_owned,)
+        Heat that leaves through the ends of the body per nodal rise [W/K].
     peclet : float
         Largest cell Péclet number ``|v| h/(2 κ degree)``.
     paths : path_solver.ClosedPaths or None
@@ -76,6 +118,7 @@ class Advection:
     """
 
     carried: PETSc.Mat
+    outflow: np.ndarray
     peclet: float
     paths: Any = field(default=None, kw_only=True)
 
@@ -105,6 +148,7 @@ def advection(
     passage: Passage,
     conductivities: dict[str, float],
     capacities: dict[str, float],
+    choice: SolverChoice,
 ) -> BodyAdvection:
     """Assemble the advection in a passing body. Every rank calls.
 
@@ -122,89 +166,104 @@ def advection(
     passage : Passage
     conductivities, capacities : dict of str to float
         By part [W/(m K)] and [J/(m³ K)], at least for the moving parts of the body.
+    choice : SolverChoice
     """
     mesh, degree = body.mesh, space.ufl_element().degree
     T, δT = ufl.TrialFunction(space), ufl.TestFunction(space)
-    own = _moving(body, passage)
+    own = set(passage.parts) & set(body.parts)
     moving = {part: (conductivities[part], capacities[part]) for part in own}
     k = body.per_part({part: k for part, (k, _) in moving.items()})
     ρc = body.per_part({part: ρc for part, (_, ρc) in moving.items()})
-    v = _velocity(mesh, passage)
-    number, delay = _upwinding(body, passage, moving, degree)
+    ends = _ends(body, passage, degree)
+    everywhere = ufl.Measure("ds", domain=mesh, metadata={"quadrature_degree": 2 * degree + 2})
+    v, leaks = _velocity(mesh, passage), lets_through(body, passage)
+    through = ufl.dot(v, ufl.FacetNormal(mesh))
+    if not leaks:
+        v, through = _tangential(kinematics, space, v, ρc, everywhere, ends, choice)
+    crossing = _transit_time(mesh, v)
+    number = ufl.dot(v, v) * crossing / (2 * degree)  # times the diffusivity
+    number *= body.per_part({part: ρc / k for part, (k, ρc) in moving.items()})
     peclet = _largest(body, passage, number)
 
     upwind = 0 * δT
-    carried = carrying(body, kinematics, passage, capacities, degree)(T, δT)
+    flow = ρc * ufl.dot(v, ufl.grad(T))
     if peclet > _MAX_RESOLVED_PECLET:  # the stabilisation vanishes with the cell Péclet number
+        delay = crossing / (2 * degree) * ufl.min_value(1, number / 3)
         upwind = delay * ufl.dot(v, ufl.grad(δT))
-        flow = ρc * ufl.dot(v, ufl.grad(T)) - k * ufl.div(ufl.grad(T))
-        carried += kinematics.integral(mesh, flow * upwind, section_measure(mesh, degree))
-    return BodyAdvection(assembled_matrix(carried), peclet, upwind)
+        flow = flow * δT + (flow - k * ufl.div(ufl.grad(T))) * upwind
+    else:
+        flow = flow * δT
+    carried = kinematics.integral(mesh, flow, section_measure(mesh, degree))
+    # what leaks through walls across the motion is no outflow, so that the heat balance shows it
+    outflow, out = np.zeros(owned(space)), ufl.max_value(through, 0)
+    if leaks or ends is not None:
+        open_ = everywhere if leaks else ends
+        carried -= kinematics.integral(mesh, ρc * ufl.min_value(through, 0) * T * δT, open_)
+    if ends is not None:
+        outflow = nodal_loads(space, lambda δT: kinematics.integral(mesh, ρc * out * δT, ends))
+    return BodyAdvection(assembled_matrix(carried), outflow, peclet, upwind)
 
 
-def carrying(
-    body: BodyMesh,
+def _ends(body: BodyMesh, passage: Passage, degree: int) -> ufl.Measure | None:
+    """Measure of the ends through which material passes; None without any. Every rank calls."""
+    facets, places = outer_facets(body)
+    facets = facets[passage.is_end(places.middle, places.normals)]
+    if not any(body.mesh.comm.allgather(len(facets))):
+        return None
+    entities = exterior_facet_domain(body.mesh, facets)
+    data = {"quadrature_degree": 2 * degree + 2}
+    return ufl.Measure("ds", domain=body.mesh, subdomain_data=[(1, entities)], metadata=data)(1)
+
+
+def _tangential(
     kinematics: Kinematics,
-    passage: Passage,
-    capacities: dict[str, float],
-    degree: int,
+    space: fem.FunctionSpace,
+    v,
+    ρc: fem.Function,
+    everywhere: ufl.Measure,
+    ends: ufl.Measure | None,
+    choice: SolverChoice,
 ):
-    """Bilinear form of the heat carried by a body, as a function of T and δT [W K].
+    """Velocity without flow through walls, and that through the ends, outward [m/s].
 
-    Zero in a body at rest. Material that enters is at ambient temperature.
+    With ``∫ ρc grad φ·grad q = ∫ ρc v·grad q`` for all q of the temperature space, less the flow
+    through the ends, ``v - grad φ`` carries no heat out elsewhere. Every rank calls.
     """
-    mesh = body.mesh
-    ρc = body.per_part({part: capacities[part] for part in _moving(body, passage)})
-    v = _velocity(mesh, passage)
-    into = ufl.max_value(-ufl.dot(v, ufl.FacetNormal(mesh)), 0)
-    dx = section_measure(mesh, degree)
-    mesh.topology.create_connectivity(mesh.topology.dim - 1, mesh.topology.dim)
-    boundary = exterior_facet_domain(mesh, exterior_facet_indices(mesh.topology))
-    ds = ufl.Measure(
-        "ds",
-        domain=mesh,
-        subdomain_data=[(1, boundary)],
-        metadata={"quadrature_degree": 2 * degree + 2},
-    )(1)
-    return lambda T, δT: (
-        kinematics.integral(mesh, ρc * ufl.dot(v, ufl.grad(T)) * δT, dx)
-        + kinematics.integral(mesh, ρc * into * T * δT, ds)
+    mesh, comm, degree = space.mesh, space.mesh.comm, space.ufl_element().degree
+    dx, n, q = section_measure(mesh, degree), ufl.FacetNormal(mesh), ufl.TestFunction(space)
+    through = ufl.dot(v, n)
+
+    def loads(density, measure=dx) -> np.ndarray:
+        return nodal_loads(space, lambda q: kinematics.integral(mesh, density(q), measure))
+
+    flow = loads(lambda q: ρc * ufl.dot(v, ufl.grad(q)))
+    size = loads(lambda q: ρc * ufl.sqrt(ufl.dot(v, v)) * q, everywhere)
+    if ends is not None:
+        flow -= loads(lambda q: ρc * through * q, ends)
+    if _largest_of(comm, flow) <= _TANGENTIAL * _largest_of(comm, size):
+        return v, through
+    if ends is not None:  # as much material leaves as comes in
+        passing = loads(lambda q: ρc * abs(through) * q, ends)
+        excess, whole = sum_over_ranks(comm, np.array([flow.sum(), passing.sum()]))
+        flow -= excess / whole * passing
+        through = through + excess / whole * abs(through)
+    φ = ufl.TrialFunction(space)
+    matrix = assembled_matrix(
+        kinematics.integral(mesh, ρc * ufl.inner(ufl.grad(φ), ufl.grad(q)), dx)
     )
+    fixed = np.zeros(len(flow), dtype=bool)
+    fixed[:1] = sum(comm.allgather(len(flow))[: comm.rank]) == 0  # a constant does not matter
+    held = matrix.copy()
+    eliminate(held, fixed)
+    solver, potential = linear_solver(choice, held, Spaces((space,)), fixed), np.zeros(len(flow))
+    for _ in range(2):
+        potential += solver.solve(np.where(fixed, 0.0, flow - multiply(matrix, potential)))
+    return v - ufl.grad(as_function(space, potential, "potential")), through
 
 
-def streamline_diffusion(
-    body: BodyMesh,
-    kinematics: Kinematics,
-    passage: Passage,
-    conductivities: dict[str, float],
-    capacities: dict[str, float],
-    degree: int,
-):
-    """Bilinear form of the diffusion along the motion by upwind test functions, see `advection`."""
-    mesh, own = body.mesh, _moving(body, passage)
-    ρc, v = body.per_part({part: capacities[part] for part in own}), _velocity(mesh, passage)
-    moving = {part: (conductivities[part], capacities[part]) for part in own}
-    _, delay = _upwinding(body, passage, moving, degree)
-    dx = section_measure(mesh, degree)
-    return lambda T, δT: kinematics.integral(
-        mesh, delay * ρc * ufl.dot(v, ufl.grad(T)) * ufl.dot(v, ufl.grad(δT)), dx
-    )
-
-
-def _moving(body: BodyMesh, passage: Passage) -> set[str]:
-    """Parts of a body that move."""
-    return set(passage.parts) & set(body.parts)
-
-
-def _upwinding(
-    body: BodyMesh, passage: Passage, moving: dict[str, tuple[float, float]], degree: int
-):
-    """Cell Péclet number, and the delay of the upwind test functions [s]."""
-    v = _velocity(body.mesh, passage)
-    crossing = _transit_time(body.mesh, v)
-    number = ufl.dot(v, v) * crossing / (2 * degree)  # times the diffusivity
-    number *= body.per_part({part: ρc / k for part, (k, ρc) in moving.items()})
-    return number, crossing / (2 * degree) * ufl.min_value(1, number / 3)
+def _largest_of(comm, values: np.ndarray) -> float:
+    """Largest magnitude on all ranks."""
+    return max(comm.allgather(float(np.abs(values).max(initial=0.0))))
 
 
 def _velocity(mesh, passage: Passage):

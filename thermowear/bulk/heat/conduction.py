@@ -297,7 +297,7 @@ class Conduction:
         nothing = np.zeros(len(self.fixed))
         return (
             _column_sums(self.cooling),
-            nothing if self.advection is None else _column_sums(self.advection.carried),
+            nothing if self.advection is None else self.advection.outflow,
         )
 
     def _free(self, heat):

@@ -14,6 +14,7 @@ from dolfinx import default_scalar_type, fem
 from ..bodies import Bodies
 from ..body_mesh import BodyMesh
 from ..compiled import assembled_matrix
+from ..field import owned
 from ..joints.joint import NO_JOINTS, Joints
 from ..kinematics import Kinematics, section_measure
 from ..solver_choice import SolverChoice
@@ -79,7 +80,7 @@ def conduction(
     spread = passage is not None and passage.spread
     even = EvenPaths(bodies, spaces, passage) if passage is not None and spread else None
     blocks = [
-        _assembled(body, kinematics, space, materials, cooling, None if spread else passage)
+        _assembled(body, kinematics, space, materials, cooling, None if spread else passage, choice)
         for body, space in zip(bodies.each, spaces.each, strict=True)
     ]
     conductivity = block_diagonal([block.conductivity for block in blocks])
@@ -90,6 +91,9 @@ def conduction(
     if any(block.advection is not None for block in blocks):
         moving = Advection(
             block_diagonal([_carried(block) for block in blocks]),
+            np.concatenate(
+                [_outflow(*pair) for pair in zip(blocks, spaces.each, strict=True)],
+            ),
             max(block.advection.peclet for block in blocks if block.advection is not None),
         )
         if choice.iterative and moving.stabilised:
@@ -133,6 +137,7 @@ def _assembled(
     materials: dict[str, ThermalMaterial],
     cooling: dict[str, float],
     passage: Passage | None,
+    choice: SolverChoice,
 ) -> _BodyMatrices:
     """Conduction, cooling and storage of one body, and advection in it; as in `conduction`."""
     degree, T, δT = space.ufl_element().degree, ufl.TrialFunction(space), ufl.TestFunction(space)
@@ -141,7 +146,7 @@ def _assembled(
     capacities = {p: m.capacity for p, m in own.items() if m.capacity is not None}
     moving = None
     if passage is not None and set(passage.parts) & set(body.parts):
-        moving = advection(body, kinematics, space, passage, conductivities, capacities)
+        moving = advection(body, kinematics, space, passage, conductivities, capacities, choice)
     conductivity = assembled_matrix(conducting(body, kinematics, conductivities, degree)(T, δT))
     cooled = _cooled(body, kinematics, cooling, conductivity, (T, δT))
     conductivity.axpy(1.0, cooled, PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
@@ -178,6 +183,11 @@ def _carried(block: _BodyMatrices) -> PETSc.Mat:
     nothing.zeroEntries()
     nothing.assemble()
     return nothing
+
+
+def _outflow(block: _BodyMatrices, space: fem.FunctionSpace) -> np.ndarray:
+    """Heat that leaves a body per nodal rise, zero at rest, owned values [W/K]."""
+    return np.zeros(owned(space)) if block.advection is None else block.advection.outflow
 
 
 def conducting(

@@ -230,7 +230,8 @@ def _heat(case: AssemblyCase) -> Iterator[Fault]:
         yield "heat", f"is not supported in a {case.analysis.type} analysis"
         return
     passing = [motion for motion in case.motions.values() if not motion.across]
-    if heat.advection != "none" and (case.model == "axisymmetric" or len(passing) != 1):
+    in_place = case.model == "axisymmetric" or any(motion.axis is not None for motion in passing)
+    if heat.advection != "none" and (in_place or len(passing) != 1):
         yield (
             "heat.advection",
             "is for one moving body that passes the others in the model, as a drum or a strip does",

@@ -28,7 +28,12 @@ def note_assembly_defaults(case: AssemblyCase) -> None:
     _note_thickness(case, any(holder.force is not None for holder in case.holders.values()))
     passing = [body for body, motion in case.motions.items() if not motion.across]
     if len(passing) == 1 and _conducts_by_default(case) and case.model != "axisymmetric":
-        _note_advection(passing[0], 'heat.advection = "resolved" carries the heat along with it')
+        _note_advection(
+            passing[0],
+            'heat.advection = "resolved" carries the heat along with it'
+            if case.motions[passing[0]].axis is None
+            else "about an axis in place nothing else is supported",
+        )
 
 
 def _conducts_by_default(case: Case | AssemblyCase) -> bool:

@@ -45,6 +45,7 @@ from .system import System
 from .thermal_system import (
     coupled_without_condensation,
     heat_partition,
+    require_passing,
 )
 
 
@@ -92,6 +93,8 @@ def build(
         contacts, basis = parts.get(
             "points", made_from.points, lambda: _paired(model, comm, kinematics, bodies, worn)
         )
+    if worn is None:
+        require_passing(model, bodies, contacts)
     coupled = coupled_without_condensation(choice, len(contacts.weights))
     made_from = made_from.solved_by(choice.name, coupled)
     with phases("assemble elasticity"):
@@ -132,7 +135,9 @@ def check_contact_points(model: Model, comm) -> None:
     CaseError
     """
     kinematics = kinematics_of(model.kinematics, model.thickness, model.sector)
-    _paired(model, comm, kinematics, _meshed(model, comm, None, None), None)
+    bodies = _meshed(model, comm, None, None)
+    contacts, _ = _paired(model, comm, kinematics, bodies, None)
+    require_passing(model, bodies, contacts)
 
 
 def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) -> Bodies:

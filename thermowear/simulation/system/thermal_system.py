@@ -18,6 +18,7 @@ from ...bulk.heat.varying import (
     varying_conduction,
     varying_expansion,
 )
+from ...bulk.heat.walls import require_swept
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.mechanics.thermal_forces import ThermalForces
 from ...bulk.solver_choice import SolverChoice
@@ -139,7 +140,7 @@ def thermal_system(
             cooling(model, heat),
             given,
             bath,
-            passage(model, heat),
+            _passage(model, heat, contacts),
             choice,
             joints=thermal_joints(spaces, glued, conductances),
         )
@@ -229,24 +230,30 @@ def _conductivities(model: Model, heat: Heat, materials: dict[str, ThermalMateri
     ]
 
 
-def passage(model: Model, heat: Heat) -> Passage | None:
+def _passage(model: Model, heat: Heat, contacts: Contacts) -> Passage | None:
     """Motion of the body that passes the others, for advection; None where conduction neglects it.
 
     Raises
     ------
     CaseError
-        If there are several such bodies, or others are glued to it.
+        If there are several such bodies, others are glued to it, or it turns about another axis.
     """
-    found = {
-        (interface.bodies[1], interface.motion.center, _passing_speed(interface.motion))
-        for interface in model.interfaces
-        if not interface.motion.at_rest
-    }
-    if heat.advection == "none" or not found:
+    moving = [one for one in model.interfaces if not one.motion.at_rest]
+    if heat.advection == "none" or not moving:
         return None
+    found = {(one.bodies[1], one.motion.center, _passing_speed(one.motion)) for one in moving}
     if len(found) > 1:
         raise CaseError(
             "heat.advection: several bodies pass others; heat can be carried along by one only"
+        )
+    if not all(one.motion.passes for one in moving):
+        raise CaseError(
+            "heat.advection: is for one body that passes the others along x, or turning about z; "
+            'use "none"'
+        )
+    if heat.advection == "resolved" and any(one.motion.history for one in moving):
+        raise CaseError(
+            'heat.advection: "resolved" needs a constant speed, without a history of the motion'
         )
     ((body, center, speed),) = found
     glued = [k for group in model.groups if body in group for k in group if k != body]
@@ -255,7 +262,32 @@ def passage(model: Model, heat: Heat) -> Passage | None:
             f"heat.advection: {model.bodies[glued[0]].name} is glued to {model.bodies[body].name}, "
             'which passes others; heat can be carried along by one body only; use "none"'
         )
-    return Passage(model.bodies[body].parts, center, speed, spread=heat.advection == "spread")
+    x = np.concatenate(
+        [
+            pairing.points[:, 0]
+            for pairing, one in zip(contacts.each, model.interfaces, strict=True)
+            if body in one.bodies
+        ]
+    )
+    contact = float(x.min()), float(x.max())
+    return Passage(model.bodies[body].parts, center, speed, heat.advection == "spread", contact)
+
+
+def require_passing(model: Model, bodies: Bodies, contacts: Contacts) -> None:
+    """Require a body that carries heat along to keep its shape in the frame. Every rank calls.
+
+    Raises
+    ------
+    CaseError
+    """
+    heat = model.heat
+    passage = None if heat is None else _passage(model, heat, contacts)
+    if passage is None:
+        return
+    own = next(body for body in model.bodies if body.parts == passage.parts)
+    of_kind = [(m.conductivity, m.conductivity_factor, m.capacity) for m in own.materials.values()]
+    kinds = {part: of_kind.index(kind) for part, kind in zip(own.parts, of_kind, strict=True)}
+    require_swept(bodies, passage, kinds, (*model.symmetry, *own.rollers))
 
 
 def _passing_speed(motion: Motion) -> float:

@@ -201,3 +201,14 @@ def test_frames_need_pandas(ring):
         assert str(fault) == "to_dataframe: needs pandas (Debian: python3-pandas)"
     else:
         assert len(frame) == len(initial.pressure(ring[1]).values)
+
+
+def test_advection_is_for_one_body_that_passes(ring):
+    """requirement: two moving bodies, or one that turns in place, are refused in one line."""
+    model = ring[0]
+    carried = replace(model, heat=tw.Heat(advection="resolved"))
+    with pytest.raises(tw.CaseError, match=r"^heat\.advection: is for one body that passes"):
+        carried.steady()
+    both = dict(zip(model.bodies, (tw.Rotation(1.0), tw.Rotation(-1.0)), strict=True))
+    with pytest.raises(tw.CaseError, match=r"^Heat\.advection: .*found 2 in Model\.motions"):
+        replace(carried, motions=both).steady()

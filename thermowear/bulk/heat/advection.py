@@ -16,7 +16,7 @@ from petsc4py import PETSc
 
 import numpy as np
 import ufl
-from dolfinx import fem
+from dolfinx import default_scalar_type, fem
 
 from ...compat import evaluate, exterior_facet_domain
 from ...parallel import sum_over_ranks
@@ -246,7 +246,7 @@ def _tangential(
         passing = loads(lambda q: ρc * abs(through) * q, ends)
         excess, whole = sum_over_ranks(comm, np.array([flow.sum(), passing.sum()]))
         flow -= excess / whole * passing
-        through = through + excess / whole * abs(through)
+        through += fem.Constant(mesh, default_scalar_type(excess / whole)) * abs(through)
     φ = ufl.TrialFunction(space)
     matrix = assembled_matrix(
         kinematics.integral(mesh, ρc * ufl.inner(ufl.grad(φ), ufl.grad(q)), dx)

@@ -218,7 +218,7 @@ def test_inclined_facets_lose_nothing(degree):
     moving, still = carrying(bodies, TURNING, degree), carrying(bodies, None, degree)
     heat = np.where(still.fixed, 0.0, times(still.capacity, np.ones(still.spaces.owned)))
     expected = still.solve(heat)
-    assert largest(moving.solve(heat) - expected) < 0.1 * largest(expected)
+    assert largest(moving.solve(heat) - expected) < 0.2 * largest(expected)  # 0.8 with leaks
     rise = random_rise(moving)
     carried = times(moving.advection.carried, rise)
     assert abs(total(carried)) < 1e-11 * total(np.abs(carried))

@@ -28,7 +28,7 @@ def require_valid(settings: TimedAnalysis, targets: list[float]) -> None:
             f"{settings.type}: the given ends of time steps must increase from 0 to the end time "
             "at most"
         )
-    nearest = np.searchsorted([time * (1 - ROUNDED) for time in steps], targets)
+    nearest = np.searchsorted(np.array(steps) * (1 - ROUNDED), np.array(targets))
     missed = [
         time
         for time, index in zip(targets, nearest, strict=True)

@@ -28,12 +28,8 @@ def require_valid(settings: TimedAnalysis, targets: list[float]) -> None:
             f"{settings.type}: the given ends of time steps must increase from 0 to the end time "
             "at most"
         )
-    nearest = np.searchsorted(np.array(steps) * (1 - ROUNDED), np.array(targets))
-    missed = [
-        time
-        for time, index in zip(targets, nearest, strict=True)
-        if time <= steps[-1] and not is_same(time, steps[max(index - 1, 0)])
-    ]
+    inside = {time for time in targets if time <= steps[-1]} - set(steps)
+    missed = sorted(t for t in inside if not any(is_same(t, step) for step in steps))
     if missed:
         raise ComputationError(
             f"{settings.type}: none of the given time steps ends at {missed[0]:g} s, an output "

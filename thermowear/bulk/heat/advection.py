@@ -102,6 +102,41 @@ class Passage:
 
 
 @dataclass(frozen=True)
+class Flow:
+    """Flow of heat with a moving body, as UFL expressions.
+
+    Attributes
+    ----------
+    kinematics : Kinematics
+    capacity : dolfinx.fem.Function
+        Volumetric heat capacity [J/(m³ K)].
+    velocity : UFL expression
+        [m/s]
+    delay : UFL expression
+        Time by which stabilising test functions look upwind [s].
+    """
+
+    kinematics: Kinematics
+    capacity: fem.Function
+    velocity: ufl.core.expr.Expr
+    delay: ufl.core.expr.Expr
+
+    def carried(self, T, δT, degree: int):
+        """Form of the heat carried inside the body [W K]."""
+        along = self.capacity * ufl.dot(self.velocity, ufl.grad(T))
+        return self._integral(along * δT, degree)
+
+    def upwind_diffusion(self, T, δT, degree: int):
+        """Form of the diffusion along the flow by the stabilising test functions [W K]."""
+        along = self.capacity * ufl.dot(self.velocity, ufl.grad(T))
+        return self._integral(along * self.delay * ufl.dot(self.velocity, ufl.grad(δT)), degree)
+
+    def _integral(self, density, degree: int):
+        mesh = self.capacity.function_space.mesh
+        return self.kinematics.integral(mesh, density, section_measure(mesh, degree))
+
+
+@dataclass(frozen=True)
 class Advection:
     """Advection terms of a moving body.
 
@@ -115,12 +150,15 @@ class Advection:
         Largest cell Péclet number ``|v| h/(2 κ degree)``.
     paths : path_solver.ClosedPaths or None
         Closed paths of a body in space with rows of cells, for an iterative solver.
+    flows : tuple of Flow or None
+        Flow of each body; None of those at rest.
     """
 
     carried: PETSc.Mat
     outflow: np.ndarray
     peclet: float
     paths: Any = field(default=None, kw_only=True)
+    flows: tuple[Flow | None, ...] = field(default=(), kw_only=True)
 
     @property
     def stabilised(self) -> bool:
@@ -136,9 +174,11 @@ class BodyAdvection(Advection):
     ----------
     upwind : UFL expression
         Addition to the test function by stabilisation (SUPG).
+    flow : Flow
     """
 
     upwind: ufl.core.expr.Expr
+    flow: Flow
 
 
 def advection(
@@ -187,8 +227,8 @@ def advection(
 
     upwind = 0 * δT
     flow = ρc * ufl.dot(v, ufl.grad(T))
+    delay = crossing / (2 * degree) * ufl.min_value(1, number / 3)
     if peclet > _MAX_RESOLVED_PECLET:  # the stabilisation vanishes with the cell Péclet number
-        delay = crossing / (2 * degree) * ufl.min_value(1, number / 3)
         upwind = delay * ufl.dot(v, ufl.grad(δT))
         flow = flow * δT + (flow - k * ufl.div(ufl.grad(T))) * upwind
     else:
@@ -201,7 +241,8 @@ def advection(
         carried -= kinematics.integral(mesh, ρc * ufl.min_value(through, 0) * T * δT, open_)
     if ends is not None:
         outflow = nodal_loads(space, lambda δT: kinematics.integral(mesh, ρc * out * δT, ends))
-    return BodyAdvection(assembled_matrix(carried), outflow, peclet, upwind)
+    own_flow = Flow(kinematics, ρc, v, delay)
+    return BodyAdvection(assembled_matrix(carried), outflow, peclet, upwind, own_flow)
 
 
 def _ends(body: BodyMesh, passage: Passage, degree: int) -> ufl.Measure | None:

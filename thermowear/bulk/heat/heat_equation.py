@@ -95,6 +95,7 @@ def conduction(
                 [_outflow(*pair) for pair in zip(blocks, spaces.each, strict=True)],
             ),
             max(block.advection.peclet for block in blocks if block.advection is not None),
+            flows=tuple(block.advection and block.advection.flow for block in blocks),
         )
         if choice.iterative and moving.stabilised:
             moving = replace(moving, paths=closed_paths(bodies, spaces, passage))

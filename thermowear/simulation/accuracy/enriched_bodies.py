@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-from ...bulk.heat.advection import carrying, streamline_diffusion
+from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.heat_equation import (
     conducting,
     given_rises,
@@ -36,7 +36,7 @@ from ..interface.body_state import BodyState
 from ..interface.equilibrium import ContactState
 from ..system.rigid_modes import fluid_pressure, surface_loads
 from ..system.system import System
-from ..system.thermal_system import ThermalSystem, conducting_parts, cooling, passage
+from ..system.thermal_system import ThermalSystem, conducting_parts, cooling
 
 _LAYERS = 2
 """Layers of cells in space that have a surplus."""
@@ -230,9 +230,7 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
     """Conduction with its surplus space; corrections transfer heat to a bath at both faces."""
     conduction, model, bodies = thermal.conduction, system.model, system.bodies
     degree, kinematics = model.discretisation.degree + 1, system.elastic.kinematics
-    parts, passing = conducting_parts(model), passage(model, heat)
-    conductivities = {part: m.conductivity for part, m in parts.items()}
-    capacities = {part: m.capacity for part, m in parts.items() if m.capacity is not None}
+    conductivities = {part: m.conductivity for part, m in conducting_parts(model).items()}
     surplus, given_h = surplus_spaces(bodies, degree - 1), cooling(model, heat)
     shifts = {
         name: float(shift[points.start])
@@ -241,6 +239,7 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
     }
     left_out = *heat.temperature, *conduction.joints.surfaces
     given, _ = given_rises(bodies, surplus, dict.fromkeys(left_out, 0.0), None)
+    advection, even = conduction.advection, conduction.even
     terms, only_corrections = [], []
     for index, body in enumerate(bodies.each):
         own = [
@@ -248,16 +247,12 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
             *transferring(body, kinematics, given_h),
         ]
         corrected = transferring(body, kinematics, shifts)
-        if passing is not None and set(passing.parts) & set(body.parts):
-            if passing.spread:  # the temperature along its paths is even, and has no details
-                given[surplus.rows(index)] = True
-            else:
-                own.append(carrying(body, kinematics, passing, capacities, degree))
-                corrected.append(
-                    streamline_diffusion(
-                        body, kinematics, passing, conductivities, capacities, degree
-                    )
-                )
+        flow = None if advection is None else advection.flows[index]
+        if flow is not None:
+            own.append(partial(flow.carried, degree=degree))
+            corrected.append(partial(flow.upwind_diffusion, degree=degree))
+        if even is not None and any(system.comm.allgather(_passes(conduction, index))):
+            given[surplus.rows(index)] = True  # no details along paths of even temperature
         terms.append(own)
         only_corrections.append(corrected)
     return EnrichedProblem(
@@ -267,6 +262,12 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
         _solver(system, conduction.respond),
         (conduction.fixed, given),
         only_corrections,
-        symmetric=passing is None or passing.spread,
+        symmetric=advection is None,
         near=near_contact(system),
     )
+
+
+def _passes(conduction: Conduction, index: int) -> bool:
+    """Test whether this rank has values on paths of a body."""
+    assert conduction.even is not None
+    return bool((conduction.even.numbers[conduction.spaces.rows(index)] >= 0).any())

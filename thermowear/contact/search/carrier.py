@@ -1,4 +1,4 @@
-"""Which of two contact faces carries the contact points and the pressure space.
+"""Choice of the contact face that carries the contact points and the pressure space.
 
 Contact ends at the rim of a face that lies within the other one. Elements of the other face are cut
 there: functions that reach over the rim by a sliver have next to no area, and follow the singular

@@ -116,7 +116,7 @@ class Pairing:
 
     @property
     def exchanged(self) -> Pairing:
-        """The same points with the bodies in the other order."""
+        """Pairing of the same points with the bodies in the other order."""
         first, second = self.sides
         return replace(
             self,

@@ -47,4 +47,4 @@ def _at_edges(bodies: Bodies, pairing: Pairing) -> np.ndarray:
         elif sharp.any():  # cuts facets of the other face
             cut = opposite(face, *beside_edges(face, sharp), other.face).facet
             at_edge.append(numbers[cut].ravel())
-    return np.isin(numbers, np.concatenate(at_edge)).any(axis=1)[carrying.facet]
+    return np.any(np.isin(numbers, np.concatenate(at_edge))[carrying.facet], axis=1)

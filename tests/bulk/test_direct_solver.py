@@ -1,5 +1,8 @@
 """Sparse direct solver: solutions, and singular matrices."""
 
+import subprocess
+import sys
+
 from petsc4py import PETSc
 
 import numpy as np
@@ -63,3 +66,24 @@ def test_a_workspace_that_is_too_small_is_enlarged(symmetry):
     found = factor.solve(load)
     assert np.abs(matrix @ found - load).max() < 1e-10 * np.abs(found).max()
     assert len(tried) > 1
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_unknowns_that_are_all_coupled(dim):
+    """requirement: the matrix of a single cell is factorised like any other; PORD would end the
+    process. In a process of its own, so that a failing test is not the end of all.
+    """
+    program = f"""
+from thermowear.app.batch.computing import start_petsc
+start_petsc()
+import numpy as np
+import subprocess
+import sys
+
+from petsc4py import PETSc
+from thermowear.bulk.direct_solver import DirectSolver
+matrix = PETSc.Mat().createDense((24, 24), array=np.eye(24) + 1.0).convert("aij")
+print(abs(DirectSolver(matrix, "definite", {dim}).solve(np.full(24, 25.0)) - 1.0).max() < 1e-12)
+"""
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert run.stdout.strip() == "True"

@@ -32,6 +32,9 @@ _ORDERINGS = {2: 2, 3: 4}
 3e5 unknowns twice as fast as the default of MUMPS, with the same fill. In 3D PORD: for 5e4 to 2e5
 unknowns 10 to 20 % faster than minimum fill, with 10 % less fill; Debian's MUMPS offers no other.
 Measured."""
+_FEW = 5_000
+"""Unknowns up to which the ordering is that of 2D: PORD ends the process by exit() where all unknowns
+are coupled to all others, as those of a single cell (at most some 2 000 of degree 8)."""
 _COLUMNS = 128
 """Block size of right-hand sides (ICNTL(27)); twice as fast as the default of MUMPS, measured."""
 
@@ -61,7 +64,8 @@ class DirectSolver:
             matrix.setOption(PETSc.Mat.Option.SPD, symmetry == "definite")
         self._comm, self._matrix = matrix.comm, matrix
         self._rows = matrix.getSizes()[0]
-        self._factorises = _TYPES[symmetry == "none"], _ORDERINGS[dim]
+        ordering = _ORDERINGS[dim if matrix.getSize()[0] > _FEW else 2]
+        self._factorises = _TYPES[symmetry == "none"], ordering
         self._prepare()
         self.repeat()
 

@@ -26,7 +26,8 @@ def coordinate_element(mesh):
 def evaluate(expression: fem.Expression, mesh, cells: np.ndarray) -> np.ndarray:
     """Values of an expression at its points in cells, shape (n_cells, n_points, value_size)."""
     values = expression.eval(mesh, np.asarray(cells, dtype=np.int32))
-    return values.reshape(len(cells), len(expression.X()), -1)
+    size = int(np.prod(expression.ufl_expression.ufl_shape))  # a rank may own no cell
+    return values.reshape(len(cells), len(expression.X()), size)
 
 
 def exterior_facet_domain(mesh, facets: np.ndarray) -> np.ndarray:

@@ -206,3 +206,42 @@ def test_ctrl_c_while_the_program_is_imported():
     command = [sys.executable, "-c", WHILE_IMPORTING]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (130, "error: interrupted\n")
+
+
+LONG = {
+    "library": "hashlib.pbkdf2_hmac('sha256', b'', b'', 2 * 10**9)",  # a call that Python cannot end
+    "step": "[None for _ in iter(int, 1)]",
+}
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("long", LONG)
+def test_a_long_step_is_interrupted(tmp_path, long, number):
+    """requirement: one signal ends a run in the middle of a step, also in a call of a library that
+    takes hours: exit code 130, and a record that says so.
+    """
+    program = f"""
+import hashlib, sys
+from thermowear import interrupts
+from thermowear.app.cli import main
+from thermowear.simulation.time import time_loop
+interrupts._PATIENCE = 0.5
+def hanging(*_, **__):
+    print("hangs", flush=True)
+    {LONG[long]}
+time_loop._Steps.next = hanging
+sys.exit(main({["run", str(COLD_RUNNING_IN), "-o", f"{tmp_path}/out", "--no-pictures", *SHORT]}))
+"""
+    process = subprocess.Popen(
+        [sys.executable, "-c", program],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    while "hangs" not in process.stdout.readline():
+        assert process.poll() is None, process.stderr.read()
+    process.send_signal(number)
+    _, said = process.communicate(timeout=60)
+    assert (process.returncode, said.strip()) == (130, "error: interrupted")
+    assert status(tmp_path / "out") == "interrupted"

@@ -159,6 +159,7 @@ def test_numbers_are_written_out_exactly(modulus, friction, nu, a, b):
     """
     changes = {
         "bodies.punch.young_modulus": f"{modulus!r} MPa",
+        "load.mean_pressure": f"{0.1 * modulus!r} MPa",
         "bodies.punch.poisson_ratio": nu,
         "contact.friction": friction,
         "wear.punch.velocity_exponent": a,

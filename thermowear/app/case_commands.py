@@ -41,10 +41,12 @@ def validate(chosen) -> int:
     """Check a case without computing it."""
     case = load(chosen.case, tuple(chosen.overrides))
     properties = [f"{case.analysis.type} analysis", case.geometry.type, case.model]
-    if case.geometry.from_file:
-        from ..geometry.checks.mesh_checks import described, whole_bodies
+    if case.geometry.from_file or (case.model != "3d" and case.mesh.accuracy is None):
+        mesh = case.tagged_mesh()
+        if case.geometry.from_file:
+            from ..geometry.checks.mesh_checks import described, whole_bodies
 
-        properties += described(whole_bodies(case.tagged_mesh(), case.geometry))
+            properties += described(whole_bodies(mesh, case.geometry))
     carries = case.heat is not None and case.heat.advection != "none"
     if case.initial_shapes or carries:
         from .batch.computing import start_petsc

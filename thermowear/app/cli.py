@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import importlib.util
 import os
-import signal
 import sys
 import time
 import traceback
 import warnings
+from contextlib import nullcontext
 
 from ..errors import CaseError, CaseNote, ComputationError
-from ..interrupts import DeferredSignals
+from ..interrupts import DeferredSignals, ForcedEnd
 from . import case_commands, editor_commands, folder_commands
 from .arguments import parser
 from .verifying import verify
@@ -23,6 +23,7 @@ from .verifying import verify
 _INTERRUPTED = 130
 _OF_THE_SYSTEM = {"basix", "dolfinx", "ffcx", "gmsh", "mpi4py", "petsc4py", "ufl"}
 """Packages that `pip install` does not bring."""
+_COMPUTING = {"run", "sweep", "study", "calibrate"}
 _DELIVERY_TIME = 1.0  # s; launchers may drop messages written just before a failing process ends
 
 
@@ -33,7 +34,8 @@ def main(arguments: list[str] | None = None) -> int:
         warnings.showwarning = _note_hook(warnings.showwarning)
         try:
             chosen = parser().parse_args(arguments)
-            return COMMANDS[chosen.command](chosen)
+            with ForcedEnd(_INTERRUPTED) if chosen.command in _COMPUTING else nullcontext():
+                return COMMANDS[chosen.command](chosen)
         except CaseError as error:
             return _report_errors(error.exit_code, *error.faults)
         except ComputationError as error:
@@ -109,7 +111,6 @@ def _run(chosen) -> int:
     Case and computation errors are raised on all ranks; any other error aborts all ranks.
     """
     began = time.perf_counter()
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     with DeferredSignals():  # some libraries print a traceback where their import is interrupted
         from .batch.computing import start_petsc
 
@@ -156,7 +157,6 @@ def _batch(chosen, run) -> int:
             f"{chosen.command}: starts its own processes (--processes N); start it without mpirun, "
             "or use --executor mpi"
         )
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
     return run(chosen)
 
 

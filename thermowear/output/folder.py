@@ -8,9 +8,9 @@ import math
 import os
 import platform
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from datetime import UTC, datetime
-from functools import cache
+from functools import cache, partial
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -19,10 +19,11 @@ import tomli_w
 
 from .. import __version__
 from ..errors import CaseError
+from ..interrupts import BEFORE_FORCED_END
 from ..results.points import by_contact
 from ..results.quantity import TABLES, table_of
 from .checkpoint import CHECKPOINT, write_checkpoint
-from .files import FRAMES, final_name, is_ours, name_at, write_text
+from .files import FRAMES, final_name, is_ours, name_at, read_object, write_text
 from .frames import remove_frames, write_fields, write_frame
 from .hot_spot_solid import HOT_SPOTS, write_hot_spots
 from .tables import RowWriter, write_points
@@ -44,13 +45,27 @@ class Lock:
 
     def __init__(self, path: Path):
         handle = os.open(path, os.O_RDONLY)
-        self.release = weakref.finalize(self, os.close, handle)
+        mark = partial(_mark_interrupted, path)
+        BEFORE_FORCED_END.append(mark)
+        self.release = weakref.finalize(self, _release, handle, mark)
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise CaseError(f"-o {path}: in use by another run") from None
         except OSError:  # a file system without locks
             return
+
+
+def _release(handle: int, mark: Callable[[], object]) -> None:
+    BEFORE_FORCED_END.remove(mark)
+    os.close(handle)
+
+
+def _mark_interrupted(path: Path) -> None:
+    """Close the record of a folder in use."""
+    record = read_object(path / "run.json")
+    if record is not None and record["status"] == "running":
+        write_json(path / "run.json", record | run_ended("interrupted", "interrupted by force"))
 
 
 class ResultsFolder:

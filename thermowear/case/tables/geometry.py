@@ -238,6 +238,10 @@ class Geometry(Section):
         """Nominal contact area for a mean pressure; None if there is none [m²]."""
         return None
 
+    def bearing_area(self) -> float | None:
+        """Largest projected area that can bear a load; None where its zone is checked [m²]."""
+        return self.contact_area()
+
     def expected_zone(self, pressing: Pressing) -> tuple[float, float] | None:
         """Estimate of the contact zone as a range of x; None where the whole face is meshed alike.
 

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any
 
 from pydantic import Field
 
-from ...errors import quoted
+from ...errors import CaseError, quoted
 from ..values import units
 from ..values.section import Number, Section
 from .tabulated import ExpansionTable, TemperatureTable
+
+SQUEEZED = 0.2
+"""Largest strain; beyond it small strains are invalid."""
 
 
 class Properties(Section):
@@ -129,3 +133,30 @@ def located_material(
         seen.append(path)
         table = bodies[other]
     return path, table
+
+
+def check_pressure(path: str, pressure: float, where: str, case: Any) -> None:
+    """Reject a mean pressure that is a large part of the modulus of the softest part.
+
+    Parameters
+    ----------
+    path : str
+        Key of the load.
+    pressure : float
+        [Pa]
+    where : str
+        What it acts on, for the message.
+    case : Case or AssemblyCase
+
+    Raises
+    ------
+    CaseError
+    """
+    moduli = {p: case.located_material(p)[1].young_modulus or math.inf for p in case.geometry.parts}
+    softer = min(moduli, key=moduli.__getitem__)
+    if pressure > SQUEEZED * moduli[softer]:
+        unit = "geometry.length_unit" if case.geometry.from_file else "the units"
+        raise CaseError(
+            f"{path}: a mean pressure of {pressure / 1e6:.4g} MPa{where} is "
+            f"{pressure / moduli[softer]:.2g} times the modulus of {softer!r} (check {unit})"
+        )

@@ -11,6 +11,7 @@ from ...errors import CaseError, note
 from ..assembly.checks import check as check_tables
 from ..assembly.schema import AssemblyCase
 from ..assembly.tables import SUPPORTS
+from ..tables.materials import check_pressure
 from ..values.section import Fault
 from . import cyclic_assembly, materials
 from .analyses import varying
@@ -29,6 +30,8 @@ def check(case: AssemblyCase) -> None:
     faults = [f"{path}: {text}" for look in _CHECKS for path, text in look(case)]
     if faults:
         raise CaseError(*faults)
+    for name, pressure in case.load.pressure.items():
+        check_pressure(f"load.pressure.{name}", pressure, "", case)
     turns = any(motion.angular_velocity is not None for motion in case.motions.values())
     cut = any(body.symmetry or body.rollers for body in case.bodies.values())
     rubs = any(contact.nominal_friction > 0.0 for contact in case.contacts.values())

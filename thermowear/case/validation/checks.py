@@ -5,10 +5,12 @@ Every check yields the path of the key at fault and a message.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from ...errors import CaseError, note
 from ..tables.analyses import Transient
+from ..tables.materials import SQUEEZED, check_pressure
 from ..tables.schema import Case
 from ..values.section import Fault
 from . import analyses, conditions, materials
@@ -32,6 +34,7 @@ def check(case: Case) -> None:
     faults = [f"{path}: {text}" for look in _CHECKS for path, text in look(case)]
     if faults:
         raise CaseError(*faults)
+    _check_loads(case)
     zone = case.geometry.expected_zone(case.pressing())
     if zone is not None:
         case.geometry.check_zone(zone)
@@ -45,6 +48,27 @@ def check(case: Case) -> None:
     for name, law in case.wear.laws.items():
         note_default_per(name, law, friction)
     note_defaults(case)
+
+
+def _check_loads(case: Case) -> None:
+    """Reject loads that do not leave strains small; those on meshes of files once these are read.
+
+    Contacts that grow with the load are rejected by their zone.
+    """
+    geometry, load = case.geometry, case.load
+    for name, pressure in load.pressure.items():
+        check_pressure(f"load.pressure.{name}", pressure, "", case)
+    if geometry.from_file:
+        return
+    force = (case.force() or 0.0) + sum(load.surfaces.values())
+    if area := geometry.bearing_area():
+        check_pressure("load", force / area, " on the projected contact area", case)
+    approach, size = case.approach() or 0.0, max(geometry.sizes().values(), default=math.inf)
+    if approach > SQUEEZED * size:
+        raise CaseError(
+            f"load: an approach of {1e3 * approach:.4g} mm is {approach / size:.0%} of the largest "
+            "size of the bodies (check the units)"
+        )
 
 
 def _names(case: Case) -> Iterator[Fault]:

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from ...case.assembly.schema import AssemblyCase
+from ...case.tables.materials import SQUEEZED, check_pressure
 from ...errors import CaseError, note
 from ..mesh.mixed import AnyMesh, block_of, block_with
 from .mesh_checks import (
@@ -25,7 +26,7 @@ from .mesh_checks import (
     points_of,
     whole_bodies,
 )
-from .pair_checks import MUCH, SQUEEZED, facing_pieces, pieces, section_gap
+from .pair_checks import MUCH, facing_pieces, pieces, section_gap
 from .solid_pairs import area_vector, distances, facing_triangles, projected_area
 from .solid_surfaces import (
     PLANES,
@@ -83,6 +84,18 @@ def check_assembly(mesh: AnyMesh, case: AssemblyCase) -> None:
     _check_loads(mesh, case, area)
     for name in case.holders:
         _check_direction(mesh, case, name)
+
+
+def check_drawn(mesh: AnyMesh, case: AssemblyCase) -> None:
+    """Check the loads of a section that was drawn from its sizes.
+
+    Raises
+    ------
+    CaseError
+        If they do not leave strains small.
+    """
+    faces = [contact.between or () for contact in case.contacts.values()]
+    _check_loads(mesh, case, sum(min(_section_area(mesh, case, f) for f in pair) for pair in faces))
 
 
 def _faces(case: AssemblyCase) -> Iterator[tuple[str, str]]:
@@ -214,26 +227,19 @@ def _check_loads(mesh: AnyMesh, case: AssemblyCase, area: float) -> None:
     area : float
         Of all contacts, which bear a force together at the most [m²].
     """
-    moduli = {part: _modulus(case, part) for part in case.geometry.parts}
-    softer = min(moduli, key=moduli.__getitem__)
     for name, holder in case.holders.items():
         history = holder.history
         courses = (None, None) if history is None else (history.force, history.approach)
         force = max(courses[0] or (holder.force or 0.0,))
         if area > 0.0:
             note_pressure(f"holders.{name}.force", force / area)
-        if area > 0.0 and force > SQUEEZED * area * moduli[softer]:
-            raise CaseError(
-                f"holders.{name}.force: a mean pressure of {force / area / 1e6:.4g} MPa on all "
-                f"contacts is {force / area / moduli[softer]:.2g} times the modulus of {softer!r} "
-                "(check geometry.length_unit)"
-            )
+            check_pressure(f"holders.{name}.force", force / area, " on all contacts", case)
         approach = max(courses[1] or (holder.approach or 0.0,))
         size = float(np.ptp(mesh.points, axis=0).max())
         if approach > SQUEEZED * size:
             raise CaseError(
                 f"holders.{name}.approach: {length(approach)} is {approach / size:.0%} of the size "
-                "of the bodies (check geometry.length_unit)"
+                f"of the bodies (check {'geometry.length_unit' if case.geometry.from_file else 'the units'})"
             )
 
 
@@ -260,7 +266,3 @@ def _check_direction(mesh: AnyMesh, case: AssemblyCase, name: str) -> None:
             f"holders.{name}: presses {body!r} along -{axis} by default, away from its contacts; "
             f"towards them with direction = {opposite}"
         )
-
-
-def _modulus(case: AssemblyCase, part: str) -> float:
-    return case.located_material(part)[1].young_modulus or np.inf

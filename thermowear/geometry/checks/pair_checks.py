@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ...case.tables.materials import SQUEEZED, check_pressure
 from ...errors import CaseError, note
 from ..mesh.mixed import AnyMesh, block_with
 from ..mesh.nodes import shape_functions
@@ -26,8 +27,6 @@ _PIECES = 4
 """Number of straight segments per curved edge, times its order."""
 _FACING = 0.05
 """Least cosine between a normal and the load direction of a segment that faces the other body."""
-SQUEEZED = 0.2
-"""Largest compression relative to the height of a body; beyond it small strains are invalid."""
 MUCH = 0.02
 """Compression relative to the height of a body above which a note is issued."""
 _APART = 0.01
@@ -116,20 +115,8 @@ def _check_pressure(case: Case, faces: _Faces) -> None:
     force, area = case.force(), faces.area
     if force is None or area == 0.0:
         return
-    moduli = {
-        part: case.material(part).young_modulus or np.inf
-        for body in case.geometry.bodies
-        for part in case.geometry.parts_of(body)
-    }
-    softer = min(moduli, key=moduli.__getitem__)
     note_pressure("load", force / area)
-    strain = force / area / moduli[softer]
-    if strain > SQUEEZED:
-        raise CaseError(
-            f"load: a mean pressure of {force / area / 1e6:.4g} MPa, for contact {faces.extent} of "
-            f"the faces, is {strain:.2g} times the modulus of {softer!r} "
-            "(check geometry.length_unit)"
-        )
+    check_pressure("load", force / area, f", for contact {faces.extent} of the faces,", case)
 
 
 def _compared(mesh: AnyMesh, case: Case) -> _Faces:

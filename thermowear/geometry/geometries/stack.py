@@ -11,6 +11,7 @@ from pydantic import model_validator
 from ...case.assembly.geometry import AssemblyGeometry
 from ...case.values.section import KeyFault, Section
 from ...case.values.units import Angle, Coordinate, Length
+from ..checks.assembly_checks import check_drawn
 from ..meshing.stacked_layers import Layer, stacked_layers, surface_names
 
 
@@ -110,6 +111,9 @@ class Stack(AssemblyGeometry):
 
     def press_direction(self, surface: str) -> tuple[float, ...]:
         return (0.0, 1.0) if surface.endswith("_bottom") else (0.0, -1.0)
+
+    def check(self, mesh, case):
+        check_drawn(mesh, case)
 
     def build(self, mesh):
         return stacked_layers(self._layers, mesh.face, mesh.row)

@@ -17,6 +17,7 @@ from ...case.tables.geometry import Geometry
 from ...case.values.section import KeyFault
 from ...case.values.units import Distance, Length
 from ...errors import CaseError
+from ..checks.assembly_checks import check_drawn
 from ..mesh.tagged import TaggedMesh
 from ..meshing.mirrored import mirrored
 from .on_block import CylinderOnBlock
@@ -75,6 +76,9 @@ class StripBetween(AssemblyGeometry):
 
     def press_direction(self, surface: str) -> tuple[float, ...]:
         return (0.0, 1.0) if surface.startswith("lower_") else (0.0, -1.0)
+
+    def check(self, mesh, case):
+        check_drawn(mesh, case)
 
     def build(self, mesh):
         if "lower" in mesh.bodies:

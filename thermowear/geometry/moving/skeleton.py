@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...errors import ComputationError
 from ...lagrange import lattice, on_lattice
 from ..mesh.nodes import chord_lengths
 from ..mesh.tagged import TaggedMesh
@@ -25,6 +26,8 @@ _UNEVEN = 1.6
 """Largest length ratio of the two edges of a pair."""
 _GROWTH = 4.0
 """Largest length ratio of neighbouring pairs."""
+_LIKE = 1e9
+"""Largest ratio of lengths of edges that halves can even out."""
 
 
 @dataclass(frozen=True)
@@ -155,6 +158,9 @@ def _is_cut(points: np.ndarray, point: int, keys, edges, labels) -> bool:
 def even(lines: list[OutlinePiece]) -> list[np.ndarray]:
     """Edge ends of the new division of each line, as numbers and fractions of its edges."""
     chords = [chord_lengths(np.vstack([line.edges[:, 0], line.edges[-1:, -1]])) for line in lines]
+    edges = np.concatenate(list(map(np.diff, chords)))
+    if not edges.min() > edges.max() / _LIKE:  # halving would not end
+        raise ComputationError("edges of the outline shrink to points")
     pairs = [_paired(np.diff(chord)) for chord in chords]
     while True:
         # with uniform chord length within each edge

@@ -157,6 +157,9 @@ class InHoleGeometry(PlaneGeometry):
     def surfaces(self) -> tuple[str, ...]:
         return tuple(self._claims())
 
+    def bearing_area(self) -> float:
+        return 2 * self.drawing.radius * self.thickness
+
     def expected_zone(self, pressing: Pressing) -> tuple[float, float]:
         reach = self.zone or self.drawing.expected_reach(pressing, self.thickness)
         return -reach, reach

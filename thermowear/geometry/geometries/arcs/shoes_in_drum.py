@@ -16,6 +16,7 @@ from pydantic import model_validator
 from ....case.assembly.geometry import AssemblyGeometry
 from ....case.values.section import KeyFault, Section
 from ....case.values.units import Angle, Coordinate, Length
+from ...checks.assembly_checks import check_drawn
 from ...meshing.cells import ORDER, Claim, every, mesh_body, tagged_bodies
 from ...meshing.polar import all_round, complete
 from .shoe import ORIGIN, Shoe, check_order, degrees
@@ -150,6 +151,9 @@ class ShoesInDrum(AssemblyGeometry):
     def track(self, face: str) -> tuple[str, float] | None:
         """Inner circumference of the drum."""
         return (_DRUM, 2 * math.pi * self.drum_radius) if self.body_of(face) == _DRUM else None
+
+    def check(self, mesh, case):
+        check_drawn(mesh, case)
 
     def build(self, mesh):
         radius, rim = self.drum_radius, self.drum_radius + self.drum_thickness

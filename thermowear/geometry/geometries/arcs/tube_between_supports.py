@@ -16,6 +16,7 @@ from pydantic import model_validator
 from ....case.assembly.geometry import AssemblyGeometry
 from ....case.values.section import KeyFault, Section
 from ....case.values.units import Angle, Length
+from ...checks.assembly_checks import check_drawn
 from ...meshing.cells import ORDER, Claim, every, mesh_body, tagged_bodies
 from ...meshing.polar import Division, Polar, all_round
 from .in_hole import InHole, check_arc
@@ -140,6 +141,9 @@ class TubeBetweenSupports(AssemblyGeometry):
         angle = self.supports[body if inwards else next(iter(self.supports))].angle
         out = math.sin(angle), math.cos(angle)
         return (-out[0], -out[1]) if inwards else out
+
+    def check(self, mesh, case):
+        check_drawn(mesh, case)
 
     def build(self, mesh):
         drawings, tube = self._drawings, mesh.face(_TUBE)

@@ -81,6 +81,9 @@ class BallInSocket(BallGeometry):
         """Radius of the rim of the socket, without clearance [m]."""
         return self.radius * math.sin(self.socket_angle)
 
+    def bearing_area(self) -> float:
+        return math.pi * self.rim**2
+
     def build(self, mesh, zone=None) -> TaggedMesh:
         zones = {body: self._zone(body, mesh) for body in self.bodies}
         bodies = self.meshed(mesh, zones, self._drawing)

@@ -97,14 +97,18 @@ class ForcedEnd:
 
     def __exit__(self, kind, error, traceback) -> None:
         signal.set_wakeup_fd(self._earlier)
-        os.close(self._write)  # ends the thread
+        _HEARD.set()
+        os.write(self._write, bytes(1))  # ends the thread, also where a child inherited the pipe
         self._watch.join()
-        os.close(self._read)
+        for end in (self._read, self._write):
+            os.close(end)
         for number, handler in self._before.items():
             signal.signal(number, handler)  # type: ignore[arg-type]
 
     def _watching(self) -> None:
-        while received := os.read(self._read, 64):
+        received = b""
+        while 0 not in received:
+            received = os.read(self._read, 64)
             if not set(received).isdisjoint(_SIGNALS) and not _HEARD.wait(_PATIENCE):
                 for action in BEFORE_FORCED_END:
                     with suppress(Exception):

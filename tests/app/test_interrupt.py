@@ -209,7 +209,7 @@ def test_ctrl_c_while_the_program_is_imported():
 
 
 LONG = {
-    "library": "hashlib.pbkdf2_hmac('sha256', b'', b'', 2 * 10**9)",  # a call that Python cannot end
+    "library": "hashlib.pbkdf2_hmac('sha256', b'', b'', 2 * 10**9)",  # Python cannot end it
     "step": "[None for _ in iter(int, 1)]",
 }
 

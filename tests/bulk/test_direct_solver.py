@@ -85,5 +85,6 @@ from thermowear.bulk.direct_solver import DirectSolver
 matrix = PETSc.Mat().createDense((24, 24), array=np.eye(24) + 1.0).convert("aij")
 print(abs(DirectSolver(matrix, "definite", {dim}).solve(np.full(24, 25.0)) - 1.0).max() < 1e-12)
 """
-    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    command = [sys.executable, "-c", program]
+    run = subprocess.run(command, capture_output=True, text=True, check=True)
     assert run.stdout.strip() == "True"

@@ -29,8 +29,7 @@ WARMER = {"time": ["0 s", "1 s"], "temperature": ["20 degC", "30 degC"]}
 RISING = {"time": ["0 s", "1 s"], "force": ["1 N", "2 N"]}
 COLD = {"heat": GONE}
 FAULTS = [
-    (RING, {"holders": {}}, "holders", "nothing is pressed: needs a holder"),
-    (RING, {"holders.hub": GONE}, "bodies.disk", "nothing holds it; needs a holder"),
+    (RING, {"holders": {}}, "holders", "needs a force"),
     (GLUED, {"holders.hub": {"surface": "disk_inside"}}, "holders.hub.surface", "glued to left"),
     (GLUED, {"bodies.disk.fixed": "disk_inside"}, "bodies.disk.fixed", "glued to left"),
     (GLUED, {"wear.left": {"coefficient": "1e-7 1/MPa"}}, "wear.left", "no effect"),

@@ -59,3 +59,17 @@ def test_axes_that_cannot_be_are_refused(center, axis, message):
     """requirement: one line that names the argument."""
     with pytest.raises(CaseError, match=message):
         tw.Rotation(1.0, center, axis=axis).in_model()
+
+
+def test_the_first_body_may_be_the_one_that_moves():
+    """requirement: it slides as a second body does that moves the opposite way, and it passes."""
+    for moving in (tw.Rotation(3.0, POINT[:2]), tw.Translation(3.0)):
+        opposite = moving.in_model().faster(-1.0)
+        first = relative_motion(moving.in_model(), None, axisymmetric=False)
+        second = relative_motion(None, opposite, axisymmetric=False)
+        np.testing.assert_array_equal(velocity(first), velocity(second))
+        assert (first.moving_side, second.moving_side) == (0, 1)
+        assert first.passes
+    spinning = tw.Rotation(3.0, POINT[:2]).in_model()
+    with pytest.raises(CaseError, match="cannot both rotate"):
+        relative_motion(spinning, spinning, axisymmetric=False)

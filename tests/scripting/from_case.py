@@ -93,7 +93,7 @@ def python_model(name, *overrides, apart=False, backwards=False):
         for key in ("cooling", "temperature", "flux", "power"):
             by_name[key] = {surface(s): value for s, value in by_name[key].items()}
         heat = tw.Heat(**by_name)
-    own = {f.name for f in fields(holder)} - {"load_direction", "bodies", "name"}
+    own = {f.name for f in fields(holder)} - {"load_direction", "bodies", "name", "hanging"}
     loads = {name: getattr(holder, name) for name in own}
     model = tw.Model(
         [face],

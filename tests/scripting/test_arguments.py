@@ -166,12 +166,13 @@ def test_supports(ring):
     with pytest.raises(tw.CaseError, match=r"facets with the tag 7 do not bound the body 'plate'"):
         replace(model, interfaces=[replace(face, other=plate.surface(7))])
     loose = replace(plate, fixed=())
-    with pytest.raises(tw.CaseError, match=r"^Body 'plate': is neither on a holder nor fixed"):
-        replace(
-            model,
-            interfaces=[tw.Interface(punch.surface(face.one.tag), loose.surface(face.other.tag))],
-            heat=None,
-        )
+    hanging = replace(
+        model,
+        interfaces=[tw.Interface(punch.surface(face.one.tag), loose.surface(face.other.tag))],
+        heat=None,
+    )
+    with pytest.raises(tw.CaseError, match=r"^bodies\.plate: neither its supports nor its contact"):
+        hanging.initial()
     flat = replace(plate, fixed=(), mid_plane=plate.fixed)
     with pytest.raises(tw.CaseError, match=r"^Body 'plate': mid_plane requires a mesh in space"):
         replace(

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from .. import load
+from ..case.assembly.schema import AssemblyCase
 from ..errors import CaseError
 
 
@@ -48,7 +49,8 @@ def validate(chosen) -> int:
 
             properties += described(whole_bodies(mesh, case.geometry))
     carries = case.heat is not None and case.heat.advection != "none"
-    if case.initial_shapes or carries:
+    hangs = isinstance(case, AssemblyCase) and case.hanging
+    if case.initial_shapes or carries or hangs:
         from .batch.computing import start_petsc
 
         start_petsc()

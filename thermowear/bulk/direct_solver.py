@@ -33,8 +33,8 @@ _ORDERINGS = {2: 2, 3: 4}
 unknowns 10 to 20 % faster than minimum fill, with 10 % less fill; Debian's MUMPS offers no other.
 Measured."""
 _FEW = 5_000
-"""Unknowns up to which the ordering is that of 2D: PORD ends the process by exit() where all unknowns
-are coupled to all others, as those of a single cell (at most some 2 000 of degree 8)."""
+"""Unknowns up to which the ordering is that of 2D: PORD ends the process by exit() where all
+unknowns are coupled to all others, as those of a single cell (at most some 2 000 of degree 8)."""
 _COLUMNS = 128
 """Block size of right-hand sides (ICNTL(27)); twice as fast as the default of MUMPS, measured."""
 

@@ -74,7 +74,6 @@ _REQUIRED = {
     "geometry": 'needs a type, such as [geometry] type = "file" (a mesh) or one of the starters',
     "bodies": "needs the material of each body: [bodies.NAME] young_modulus = ...",
     "load": "needs one of load.force, load.mean_pressure and load.approach",
-    "holders": "needs a holder of a surface: [holders.NAME] surface = ..., force = ...",
     "analysis": 'needs a type, such as [analysis] type = "steady"',
 }
 """Contents of the required tables and keys of a case, for messages."""

@@ -7,6 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+NOTHING_PRESSED = (
+    "nothing is pressed: needs a force, a moment or an approach of a holder, a pressure, heat, or "
+    "faces that overlap in the mesh"
+)
+"""Message on bodies in contact that neither loads nor heat close."""
 _ROUNDING = 1e-9
 
 

@@ -48,8 +48,9 @@ class Holder:
         opposite force acts on it at the same point. Empty: the surroundings bear it.
     surface_forces : mapping of str to float
         Forces along the load direction, distributed evenly over surfaces of body 1 [N].
-    surface_pressures : mapping of str to float
-        Pressures on surfaces of either body, towards the body, constant in time [Pa].
+    hanging : bool
+        True for bodies without a holder whose contacts alone keep them from these motions: no
+        surface is held.
     """
 
     load_direction: tuple[float, ...]
@@ -63,10 +64,10 @@ class Holder:
     closing_moment: float | None = None
     history: LoadHistory | None = None
     surface_forces: Mapping[str, float] = field(default_factory=dict)
-    surface_pressures: Mapping[str, float] = field(default_factory=dict)
     bodies: tuple[int, ...] = (0,)
     name: str = ""
     reaction: str = ""
+    hanging: bool = False
 
     @property
     def pressing_force(self) -> np.ndarray:
@@ -98,7 +99,9 @@ class Motion:
     across : bool
         True if body 1 slides normal to a plane section instead of along x.
     passes : bool
-        True if body 2 passes under body 1 in the model, as a strip, a disk or a drum does.
+        True if the moving body passes the other one in the model, as a strip or a drum does.
+    moving_side : int
+        Side of the interface of that body: 0 if it is body 1.
     history : TimeFunction or None
         Time-dependent factor of the speed.
     """
@@ -109,6 +112,7 @@ class Motion:
     axis: TurningAxis | None = None
     across: bool = False
     passes: bool = False
+    moving_side: int = 1
     history: TimeFunction | None = None
 
     @property

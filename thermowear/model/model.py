@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, Protocol, TypeVar
 
@@ -21,6 +21,21 @@ Solver = Literal["auto", "direct", "multigrid"]
 Zone = tuple[float, float]
 """Range of x [m]."""
 Item = TypeVar("Item", Interface, Holder)
+_IN_SECTION = {"x": {1}, "z": {0}, "rotation": set[int]()}
+_LOOSE: Mapping[str, Mapping[str, set[int]]] = {
+    "axisymmetric": {"z": {0}},
+    "plane-strain": _IN_SECTION,
+    "plane-stress": _IN_SECTION,
+    "3d": {
+        "x": {1, 2},
+        "y": {0, 2},
+        "z": {0, 1},
+        "rotation-x": {0},
+        "rotation-y": {1},
+        "rotation": {2},
+    },
+}
+"""Axes of the supports that leave a motion free, by kinematic model."""
 
 
 class MeshSource(Protocol):
@@ -95,6 +110,7 @@ class Model:
         The held body first.
     interfaces : tuple of Interface
     holders : tuple of Holder
+        None where supports hold all bodies.
     meshes : MeshSource
     discretisation : Discretisation
     ties : tuple of Tie
@@ -108,6 +124,8 @@ class Model:
         Fraction of the circumference covered by an axisymmetric body 1.
     symmetry : tuple of str
         Surfaces on a plane of symmetry x = const.
+    surface_pressures : mapping of str to float
+        Pressures on surfaces of any body, towards the body, constant in time [Pa].
     title : str
 
     Raises
@@ -129,10 +147,11 @@ class Model:
     title: str = ""
     ties: tuple[Tie, ...] = ()
     probes: tuple[Probe, ...] = ()
+    surface_pressures: Mapping[str, float] = field(default_factory=dict)
 
     def __post_init__(self):
-        if not self.interfaces or not self.holders:
-            raise CaseError("model: needs at least one interface and one holder")
+        if not self.interfaces:
+            raise CaseError("model: needs at least one interface")
         held = [index for holder in self.holders for index in holder.bodies]
         named = [*held, *(index for interface in self.interfaces for index in interface.bodies)]
         if len(set(held)) < len(held) or max(named) >= len(self.bodies):
@@ -297,3 +316,46 @@ class Model:
     def ring(self, surface: str) -> float:
         """Area of a surface relative to that in the model, see `Body.ring`."""
         return next((body.ring for body in self.bodies if surface in body.surfaces), 1.0)
+
+
+def hanging_holders(
+    kinematics: str,
+    bodies: Sequence[Body],
+    symmetry: Sequence[str],
+    groups: Sequence[tuple[int, ...]],
+    held: Collection[int],
+) -> tuple[Holder, ...]:
+    """Free motions of the bodies that neither a holder nor a clamped surface holds.
+
+    Other supports lie in planes normal to an axis: they prevent motions along it, and rotations
+    about the other axes. Those that are left must be carried by contacts.
+
+    Parameters
+    ----------
+    kinematics : str
+    bodies : sequence of Body
+    symmetry : sequence of str
+        Surfaces on planes of symmetry.
+    groups : sequence of tuple of int
+        Bodies that are glued to each other, by index.
+    held : collection of int
+        Bodies on holders.
+    """
+    found = []
+    for group in groups:
+        members = [bodies[index] for index in group]
+        if not set(held).isdisjoint(group) or any(body.fixed for body in members):
+            continue
+        planes = {
+            0: any(surface in symmetry for body in members for surface in body.surfaces),
+            1: any(body.rollers for body in members),
+            2: any(body.mid_plane for body in members),
+        }
+        axes = {axis for axis, present in planes.items() if present}
+        free = tuple(name for name, allowed in _LOOSE[kinematics].items() if axes <= allowed)
+        if free:
+            origin = (0.0,) * (3 if kinematics == "3d" else 2)
+            down = (*origin[:-1], -1.0)
+            name = members[0].name
+            found.append(Holder(down, origin, origin, free, bodies=group, name=name, hanging=True))
+    return tuple(found)

@@ -21,17 +21,14 @@ def relative_motion(first: Motion | None, second: Motion | None, axisymmetric: b
     Raises
     ------
     CaseError
-        If the first body turns about a centre, or both bodies move other than along or about the
-        same axis.
+        If both bodies move other than along or about the same axis.
     """
     if first is None and second is None:
         return Motion()
-    if first is None or second is None:
-        found = (
-            _over_moving(second, axisymmetric) if first is None else _moving(first, axisymmetric)
-        )
-        assert found is not None
-        return found
+    if first is None:
+        return _over_moving(second, axisymmetric)
+    if second is None:
+        return _over_resting(first, axisymmetric)
     if first.axis is not None or second.axis is not None:
         raise CaseError(
             "motions: a body that turns about an axis in place must slide on one at rest"
@@ -50,15 +47,18 @@ def relative_motion(first: Motion | None, second: Motion | None, axisymmetric: b
     return replace(other, velocity=velocity, angular_velocity=angular_velocity)
 
 
-def _moving(motion: Motion, axisymmetric: bool) -> Motion:
-    """Motion of the first body over one at rest."""
+def _over_resting(motion: Motion, axisymmetric: bool) -> Motion:
+    """Motion of a moving first body over one at rest: the opposite one of the second body."""
     if motion.axis is not None:
         return replace(motion, center=None)
+    found = _over_moving(motion, axisymmetric).faster(-1.0)
+    return replace(found, moving_side=0) if found.passes else found
+
+
+def _moving(motion: Motion, axisymmetric: bool) -> Motion:
+    """Motion of the first body, of two that move."""
     if motion.velocity is None and not axisymmetric:
-        raise CaseError(
-            "motions: the first body of an interface cannot rotate about a centre, only the second "
-            "one; two bodies in contact cannot both do so"
-        )
+        raise CaseError("motions: two bodies in contact cannot both rotate about a centre")
     return replace(motion, center=None)
 
 

@@ -52,7 +52,9 @@ class HeatRow:
 
     time: float = as_in(HistoryRow)
     speed: float = column("sliding speed", "m/s")
-    normal_force: float = column("normal force", "N", meaning="along the load direction")
+    normal_force: float = column(
+        "normal force", "N", meaning="resultant of the pressure; along the load in loads, holders"
+    )
     friction_power: float = as_in(HistoryRow)
     heat_in: float = column("heat input", "J", "kJ", "since the start")
     heat_stored: float = column("heat stored", "J", "kJ", "since the start")

@@ -14,6 +14,7 @@ OTHER = "Other"
 GROUPS: dict[str, tuple[Quantity, ...]] = {
     "Loads and forces": (
         _heat["normal_force"],
+        from_key("contact_force_N", meaning="integral of the pressure, to which friction refers"),
         from_key("fluid_force_N", meaning="of the fluid between the faces, opening them"),
         from_key("friction", "coefficient of friction"),
         from_key("friction_force_N"),

@@ -24,7 +24,6 @@ _LOADS = {
     "tangential_force": units.SignedForce,
     "closing_moment": units.SignedMoment,
 }
-_ON_SURFACES = {"surface_forces": units.Force, "surface_pressures": units.Pressure}
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,10 +117,6 @@ class SurfaceHolder:
         bearing = self.reaction
         loads = {"force": self._largest("force"), "approach": self._largest("approach")}
         loads |= {key: getattr(self, key) for key in ("tangential_force", "closing_moment")}
-        on_surfaces: dict[str, Any] = {
-            key: by_surface(kind, getattr(self, key), f"Holder.{key}")
-            for key, kind in _ON_SURFACES.items()
-        }
         return Holder(
             load_direction=direction,
             bodies=tuple(bodies.index(surface.body) for surface in self.surfaces),
@@ -133,7 +128,7 @@ class SurfaceHolder:
             moments=(about_x, about_y, about_z),
             history=self.history,
             **quantities("Holder", _LOADS, loads),
-            **on_surfaces,
+            surface_forces=by_surface(units.Force, self.surface_forces, "Holder.surface_forces"),
         )
 
     def _largest(self, name: str) -> Any:

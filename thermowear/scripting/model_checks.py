@@ -21,7 +21,7 @@ def check(model: Model, known: Sequence[str]) -> None:
     Raises
     ------
     CaseError
-        If facets of a surface do not bound its body, a body has no support, or a law depends on
+        If facets of a surface do not bound its body, or a law depends on
         temperatures that are not computed.
     """
     _surfaces(model, known)
@@ -37,19 +37,16 @@ def _surfaces(model: Model, known: Sequence[str]) -> None:
     """Reject surfaces whose facets do not bound their body."""
     heat = model.heat or Heat()
     supports = [n for b in model.bodies for n in (*b.fixed, *b.rollers, *b.mid_plane)]
-    loads = [n for h in model.holders for n in (*h.surface_forces, *h.surface_pressures)]
+    loads = [n for h in model.holders for n in h.surface_forces] + [*model.surface_pressures]
     faces = [
         *(n for i in model.interfaces for n in i.faces),
         *(n for t in model.ties for n in t.faces),
     ]
-    glued = {index for tie in model.ties for index in tie.bodies}
     thermal = *heat.cooling, *heat.temperature, *heat.flux, *heat.power
     for name in (*faces, *supports, *loads, *thermal, *model.symmetry):
         if name not in known:
             body, _, tag = name.rpartition(":")
             raise CaseError(f"Model: facets with the tag {tag} do not bound the body {body!r}")
-    for index, held in enumerate(model.bodies):
+    for held in model.bodies:
         if held.mid_plane and model.kinematics != "3d":
             raise CaseError(f"Body {held.name!r}: mid_plane requires a mesh in space")
-        if not (held.fixed or held.rollers or held.mid_plane or index in glued):
-            raise CaseError(f"Body {held.name!r}: is neither on a holder nor fixed")

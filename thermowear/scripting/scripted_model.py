@@ -19,9 +19,10 @@ from ..model.analyses import (
     StaticAnalysis,
     TransientAnalysis,
 )
+from ..model.body import Body
 from ..model.conditions import Heat, Holder
 from ..model.interface import Interface
-from ..model.model import Discretisation, Model, Solver
+from ..model.model import Discretisation, Model, Solver, hanging_holders
 from ..model.relative_motion import relative_motion
 from ..model.tie import glued_bodies, with_glued
 from ..simulation.analyses.run import needs_single_solution, solve
@@ -31,7 +32,7 @@ from ..simulation.system.setup_cache import SetupCache
 from ..simulation.system.system import System
 from ..timer import Phases
 from .body import BodySurface, MeshBody
-from .conversion import number
+from .conversion import by_surface, number
 from .face_pair import FacePair
 from .face_tie import FaceTie
 from .holding import Rotation, SurfaceHolder, Translation
@@ -55,6 +56,7 @@ class ScriptedModel:
     ----------
     interfaces : sequence of FacePair
     holders : sequence of SurfaceHolder
+        None where supports hold all bodies, or contacts that leave a single position.
     motions : mapping of MeshBody to (Rotation or Translation)
     heat : Heat or None
         None: isothermal.
@@ -70,6 +72,8 @@ class ScriptedModel:
         Surfaces on planes of symmetry x = const.
     ties : sequence of FaceTie
         Glued faces.
+    surface_pressures : mapping of BodySurface to quantity
+        Pressures on surfaces of any body, towards the body [Pa].
     title : str
 
     Raises
@@ -79,7 +83,7 @@ class ScriptedModel:
     """
 
     interfaces: Sequence[FacePair]
-    holders: Sequence[SurfaceHolder]
+    holders: Sequence[SurfaceHolder] = ()
     motions: Mapping[MeshBody, Rotation | Translation] = field(default_factory=dict)
     heat: Heat | None = None
     kinematics: Literal["axisymmetric", "plane-strain", "plane-stress"] | None = None
@@ -88,16 +92,18 @@ class ScriptedModel:
     solver: Solver = "auto"
     symmetry: Sequence[BodySurface] = ()
     ties: Sequence[FaceTie] = ()
+    surface_pressures: Mapping[BodySurface, Any] = field(default_factory=dict)
     title: str = ""
     _shared: dict[Any, Any] = field(default_factory=dict, repr=False)
 
     def __post_init__(self):
-        if not self.interfaces or not self.holders:
-            raise CaseError("Model: needs at least one interface and one holder")
+        if not self.interfaces:
+            raise CaseError("Model: needs at least one interface")
         for pair in self.interfaces:
             if pair.one.body is pair.other.body:
                 raise CaseError("Model: an interface has both faces on the same body")
-        if not any(holder.pressed for holder in self.holders):
+        floating = [holder for holder in self.holders if holder.free and not holder.pressed]
+        if self.holders and len(floating) == len(self.holders) and not self.surface_pressures:
             raise CaseError("Holder: needs one of force, approach and closing_moment")
         touching = {face.body for face in self._faces}
         apart = [body for body in (*self.bodies, *self.motions) if body not in touching]
@@ -124,7 +130,27 @@ class ScriptedModel:
 
     @property
     def _is_pair(self) -> bool:
-        return len(self.bodies) == 2 and len(self.interfaces) == len(self.holders) == 1
+        alone = len(self.interfaces) == len(self.holders) == 1
+        return len(self.bodies) == 2 and alone and not self._hanging
+
+    @cached_property
+    def _model_bodies(self) -> tuple[Body, ...]:
+        held = {surface.body: surface for holder in self.holders for surface in holder.surfaces}
+        surfaces_of = self.meshes.surfaces_of
+        return tuple(body.in_model(surfaces_of(body), held.get(body)) for body in self.bodies)
+
+    @cached_property
+    def _groups(self) -> list[tuple[int, ...]]:
+        return glued_bodies(len(self.bodies), [tie.in_model(self.bodies) for tie in self.ties])
+
+    @cached_property
+    def _hanging(self) -> tuple[Holder, ...]:
+        """Free motions of the bodies that no holder and no clamped surface holds."""
+        surfaces = [surface for holder in self.holders for surface in holder.surfaces]
+        held = with_glued([self.bodies.index(surface.body) for surface in surfaces], self._groups)
+        symmetry = [surface.name for surface in self.symmetry]
+        given = self.kinematics or "3d", self._model_bodies, symmetry, self._groups, held
+        return hanging_holders(*given)
 
     @property
     def meshes(self) -> UserMeshes:
@@ -213,7 +239,6 @@ class ScriptedModel:
 
     def _model(self, analysis: Analysis) -> Model:
         meshes = self.meshes
-        held = {surface.body: surface for holder in self.holders for surface in holder.surfaces}
         number(self.degree, "Model.degree", 1, 10)
         if self.solver not in SOLVERS:
             raise CaseError(
@@ -237,11 +262,9 @@ class ScriptedModel:
             raise CaseError("Model.thickness: needed for a plane model, and for no other")
         model = Model(
             kinematics=self.kinematics or "3d",
-            bodies=tuple(
-                body.in_model(meshes.surfaces_of(body), held.get(body)) for body in self.bodies
-            ),
+            bodies=self._model_bodies,
             interfaces=tuple(self._interface(pair, analysis) for pair in self.interfaces),
-            holders=tuple(self._holder(holder, dim) for holder in self.holders),
+            holders=(*(self._holder(holder, dim) for holder in self.holders), *self._hanging),
             meshes=meshes,
             discretisation=Discretisation(self.degree, solver=self.solver),
             heat=self.heat,
@@ -249,31 +272,38 @@ class ScriptedModel:
             symmetry=tuple(surface.name for surface in self.symmetry),
             title=self.title,
             ties=tuple(tie.in_model(self.bodies) for tie in self.ties),
+            surface_pressures=self._surface_pressures(),
         )
         check(model, meshes.tagged.surfaces)
         return model
 
+    def _surface_pressures(self) -> dict[str, float]:
+        """Pressures of the model and those given with its holders."""
+        found: dict[str, float] = {}
+        for owner, key in ((self, "Model"), *((holder, "Holder") for holder in self.holders)):
+            given = owner.surface_pressures
+            found |= by_surface(units.Pressure, given, f"{key}.surface_pressures")
+        return found
+
     def _interface(self, pair: FacePair, analysis: Analysis) -> Interface:
-        """Interface with the held face of a pair first, or that of a body at rest."""
-        order = self.bodies if self._is_pair else [None, *self.motions]
-        if isinstance(analysis, ReciprocatingAnalysis) and not self._is_pair:
-            order = [face.body for face in pair.faces]
-        first, second = sorted(
-            pair.faces, key=lambda face: order.index(face.body) if face.body in order else 0
-        )
+        """Interface with the faces in their order, of a pair with the held one first."""
+        order = self.bodies if self._is_pair else [face.body for face in pair.faces]
+        first, second = sorted(pair.faces, key=lambda face: order.index(face.body))
         one, other = (
             None if given is None else given.in_model()
             for given in (self.motions.get(face.body) for face in (first, second))
         )
         motion = relative_motion(one, other, self.kinematics == "axisymmetric")
+        if self._is_pair and motion.center is None:  # seen from body 1
+            passes = motion.passes and motion.moving_side == 1
+            motion = replace(motion, passes=passes, moving_side=1)
         closes = not isinstance(analysis, FrettingAnalysis)
         found = pair.in_model(self.bodies, (first, second), motion, closes)
         return replace(found, name="") if self._is_pair else found
 
     def _holder(self, holder: SurfaceHolder, dim: int) -> Holder:
         found = holder.in_model(dim, self.bodies)
-        groups = glued_bodies(len(self.bodies), [tie.in_model(self.bodies) for tie in self.ties])
-        found = replace(found, bodies=with_glued(found.bodies, groups))
+        found = replace(found, bodies=with_glued(found.bodies, self._groups))
         return replace(found, name="") if self._is_pair else found
 
 

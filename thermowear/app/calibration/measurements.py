@@ -205,10 +205,8 @@ def _pairs(case: AnyCase, contact: str | None) -> list[tuple[str, ...]]:
     """Bodies of each contact, or of one of them."""
     if not isinstance(case, AssemblyCase):
         return [tuple(case.geometry.bodies[:2])]
-    from ...simulation.from_case.assembly import ordered_faces
-
     return [
-        tuple(map(case.geometry.body_of, ordered_faces(case, table)))
+        tuple(map(case.geometry.body_of, table.between or ()))
         for name, table in case.sliding.items()
         if contact in (None, name)
     ]

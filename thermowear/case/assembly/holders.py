@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ...laws.motions import spans
+from ...laws.motions import NOTHING_PRESSED, spans
 from ..values.section import Fault
 from .schema import AssemblyCase
-from .tables import SUPPORTS, AssemblyHolderTable
+from .tables import AssemblyHolderTable
 
 _SECTION = ("x", "z", "rotation")
 _FREE = {
@@ -27,10 +27,7 @@ _IN_SECTION = ("tangential_force", "moments", "point", "pivot")
 
 
 def held(case: AssemblyCase) -> Iterator[Fault]:
-    """Every body has one holder, or supports, or is glued to such a body."""
-    if not case.holders:
-        yield "holders", "nothing is pressed: needs a holder, [holders.NAME] with a surface"
-        return
+    """Bodies have one holder at most, and clamped ones none."""
     owners = dict[str, str]()
     for name, holder in case.holders.items():
         for body in map(case.geometry.body_of, holder.surface):
@@ -43,14 +40,6 @@ def held(case: AssemblyCase) -> Iterator[Fault]:
                     joined = "" if mate == body else f" is glued to {body}, which"
                     yield f"bodies.{mate}.fixed", f"{mate}{joined} is on holders.{name}"
             owners[body] = name
-    for body in case.geometry.bodies:
-        if not any(mate in owners or _supported(case, mate) for mate in case.glued[body]):
-            text = f"needs a holder ([holders.NAME] with a surface of {body}) or supports (fixed)"
-            yield f"bodies.{body}", f"nothing holds it; {text}"
-
-
-def _supported(case: AssemblyCase, body: str) -> bool:
-    return any(getattr(case.bodies[body], key) for key in SUPPORTS)
 
 
 def fitting(case: AssemblyCase) -> Iterator[Fault]:
@@ -74,15 +63,24 @@ def loads(case: AssemblyCase) -> Iterator[Fault]:
     for name, holder in case.holders.items():
         yield from ((f"holders.{name}.{key}", text) for key, text in _unmoved(case, holder))
     each = case.holders.values()
-    loaded = [h.force or h.closing_moment or any(h.moments or ()) for h in each]
-    moved = [h.approach or h.history for h in each]
-    if any(loaded) or case.load.pressure or not case.holders:
-        return
-    if not any(moved) and case.heat is None:
-        yield "holders", "nothing is pressed: one of them needs a force, a moment or an approach"
-    elif case.analysis.type == "steady" and not any(h.history for h in each):
+    steady = case.analysis.type == "steady"
+    if not pressed(case) and (steady or not case.geometry.from_file):  # drawn bodies just touch
+        yield "holders", NOTHING_PRESSED
+    elif steady and not (_loaded(case) or any(h.history for h in each)):
         text = "no steady state, as wear unloads the contacts: one of them needs a force"
         yield "holders", text
+
+
+def pressed(case: AssemblyCase) -> bool:
+    """Whether loads, motions or heat may press bodies that do not overlap at first."""
+    moved = any(h.approach or h.history for h in case.holders.values())
+    return _loaded(case) or moved or case.heat is not None
+
+
+def _loaded(case: AssemblyCase) -> bool:
+    each = case.holders.values()
+    loaded = any(h.force or h.closing_moment or any(h.moments or ()) for h in each)
+    return loaded or bool(case.load.pressure)
 
 
 def _unmoved(case: AssemblyCase, holder: AssemblyHolderTable) -> Iterator[Fault]:

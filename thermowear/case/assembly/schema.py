@@ -55,7 +55,8 @@ class AssemblyCase(Section):
     bodies : dict of str to BodyTable
         Material and supports of each body, by its name in the geometry.
     holders : dict of str to AssemblyHolderTable
-        Rigid holders of bodies, by name.
+        Rigid holders of bodies, by name; none where supports hold all bodies, or contacts that
+        leave a single position.
     load : LoadTable
         Pressures on surfaces.
     motions : dict of str to BodyMotionTable
@@ -81,7 +82,7 @@ class AssemblyCase(Section):
     bodies: dict[str, AssemblyBodyTable]
     contact: InterfaceTable = InterfaceTable()
     contacts: dict[str, AssemblyContactTable] = {}
-    holders: dict[str, AssemblyHolderTable]
+    holders: dict[str, AssemblyHolderTable] = {}
     load: SurfaceLoadTable = SurfaceLoadTable()
     motions: dict[str, BodyMotionTable] = {}
     wear: WearTable = WearTable()
@@ -135,6 +136,13 @@ class AssemblyCase(Section):
                 one, other = (groups[self.geometry.body_of(face)] for face in contact.between)
                 groups |= dict.fromkeys(one | other, one | other)
         return groups
+
+    @property
+    def hanging(self) -> list[str]:
+        """Bodies that neither a holder nor a clamped surface holds, alone or glued to others."""
+        held = {self.geometry.body_of(s) for h in self.holders.values() for s in h.surface}
+        held |= {body for body in self.geometry.bodies if self.bodies[body].fixed}
+        return [body for body in self.geometry.bodies if held.isdisjoint(self.glued[body])]
 
     @property
     def contact_tables(self) -> dict[str, InterfaceTable]:

@@ -12,9 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from ...case.assembly.holders import pressed
 from ...case.assembly.schema import AssemblyCase
 from ...case.tables.materials import SQUEEZED, check_pressure
 from ...errors import CaseError, note
+from ...laws.motions import NOTHING_PRESSED
 from ..mesh.mixed import AnyMesh, block_of, block_with
 from .mesh_checks import (
     check_one_curve,
@@ -36,6 +38,8 @@ from .solid_surfaces import (
     check_solid_pieces,
 )
 
+_TOUCHING = 1e-9
+"""Overlap, by the height of a body, below which faces just touch."""
 _CLOSED = 0.05
 """Mean normal below which a face encloses the other body, and has no side."""
 
@@ -73,14 +77,17 @@ def check_assembly(mesh: AnyMesh, case: AssemblyCase) -> None:
         _check_face(mesh, case, path, face)
     for body in case.geometry.bodies:
         _check_body(mesh, case, body)
-    area = 0.0
+    area, overlaps = 0.0, pressed(case)
     for name in case.contacts:
         faces = _compared(mesh, case, name)
         if faces is None:  # no bound of the load
-            area = np.inf
+            area, overlaps = np.inf, True
             continue
+        overlaps = overlaps or faces.gap < -_TOUCHING * faces.height
         _check_distance(case, name, faces)
         area += faces.area
+    if not overlaps:
+        raise CaseError(f"holders: {NOTHING_PRESSED}")
     _check_loads(mesh, case, area)
     for name in case.holders:
         _check_direction(mesh, case, name)
@@ -237,9 +244,10 @@ def _check_loads(mesh: AnyMesh, case: AssemblyCase, area: float) -> None:
         approach = max(courses[1] or (holder.approach or 0.0,))
         size = float(np.ptp(mesh.points, axis=0).max())
         if approach > SQUEEZED * size:
+            unit = "geometry.length_unit" if case.geometry.from_file else "the units"
             raise CaseError(
                 f"holders.{name}.approach: {length(approach)} is {approach / size:.0%} of the size "
-                f"of the bodies (check {'geometry.length_unit' if case.geometry.from_file else 'the units'})"
+                f"of the bodies (check {unit})"
             )
 
 

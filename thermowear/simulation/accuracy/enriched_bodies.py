@@ -117,9 +117,8 @@ class EnrichedBodies:
         if fluid is not None:
             traction = traction + fluid[:, None] * system.contacts.normals
         loads = vector_trace(problem.surplus, system.contacts, traction) @ system.weights
-        for holder in system.model.holders:
-            for works in surface_loads(holder, system.elastic):
-                loads = loads + problem.surplus.loads(works)
+        for works in surface_loads(system.model, system.elastic):
+            loads = loads + problem.surplus.loads(works)
         return loads
 
 

@@ -11,6 +11,7 @@ from ...contact.faces.rim import near_chosen, on_edges, rim
 from ...contact.search.pairing import PairedFace
 from ...errors import CaseError, ComputationError
 from ...geometry.checks.mesh_checks import length
+from ...laws.motions import NOTHING_PRESSED
 from ...model.analyses import (
     Analysis,
     FrettingAnalysis,
@@ -41,31 +42,21 @@ _OF_BODIES = (
     "of the thickness behind the face or of its radius of curvature, or tilts elements by ten "
     "times that"
 )
-_NO_CLOSURE = 1e-9
-"""Relative closure of the gap, below which a motion counts as one that no contact resists."""
 
 
-def require_support(system: System) -> None:
-    """Reject several bodies whose holders can move together without closing any gap.
+def require_pressed(system: System) -> None:
+    """Reject a model in which nothing can close a contact.
 
     Raises
     ------
     CaseError
     """
-    modes = system.holder.modes
-    if system.model.is_pair or not modes.shape[1]:
+    modes = system.holder.rigid_modes
+    loaded = any(mode.load or mode.amplitude or mode.history for mode in modes)
+    if loaded or system.thermal is not None or system.dead_load is not None:
         return
-    sizes = np.linalg.norm(modes, axis=0)
-    sizes[sizes == 0.0] = 1.0
-    values, directions = np.linalg.eigh(modes.T @ modes / np.outer(sizes, sizes))
-    if values[0] > _NO_CLOSURE:
-        return
-    names = np.array([f"{h.name} ({name})" for h in system.model.holders for name in h.free])
-    moving = names[system.holder.free][np.abs(directions[:, 0]) > 0.1 / len(sizes)]
-    raise CaseError(
-        f"holders: the free motions {', '.join(moving)} together close no gap, so that nothing "
-        "carries their loads; fix one of these holders (free = []), or give its approach"
-    )
+    if not (system.contacts.gap < 0.0).any():
+        raise CaseError(f"holders: {NOTHING_PRESSED}")
 
 
 def require_one_way(system: System, analysis: Analysis) -> None:

@@ -29,6 +29,7 @@ from ..results.recording import Snapshot, sample
 from ..results.summary import merged
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
+from ..system.building import require_carried
 from ..system.system import System
 from .checks import (
     changed_by_updates,
@@ -38,7 +39,7 @@ from .checks import (
     moved_against_load,
     open_contact,
     require_one_way,
-    require_support,
+    require_pressed,
     singular_pressure,
     too_hot,
 )
@@ -127,7 +128,8 @@ def analyse(
     choice = system.choice
     system = wearing_faces(system, analysis, observer)
     if not isinstance(analysis, FrettingAnalysis):  # where friction carries loads, too
-        require_support(system)
+        require_carried(system.model, system.contacts, system.holder)
+        require_pressed(system)
     require_one_way(system, analysis)
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:

@@ -77,7 +77,6 @@ class TransientHistory(AnalysisHistory[Moment]):
         self._speed, self._is_pair, self._alternates = 0.0, system.model.is_pair, False
         self._coated = layers(system.model).keys()
         self._lost: dict[Face, tuple[float, float]] = {}
-        self._pressing: tuple[InterfaceConditions, np.ndarray] | None = None
         self._rubbing: tuple[InterfaceConditions, np.ndarray] | None = None
 
     def restart_data(self) -> tuple:
@@ -249,7 +248,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         return HeatRow(
             time=moment.time,
             speed=self._speed,
-            normal_force=float(self._force_per_pressure(conditions) @ pressure),
+            normal_force=sum(system.normal_forces(pressure)),
             friction_power=float(system.weights @ (conditions.heating * pressure)),
             heat_in=balance.made,
             heat_stored=balance.stored,
@@ -267,8 +266,7 @@ class TransientHistory(AnalysisHistory[Moment]):
             return []
         now = self.loop.now
         ambient = float("nan") if now.problem.heat is None else now.problem.heat.ambient
-        pressing = self._force_per_pressure(conditions)
-        return contact_rows(now.system, conditions, moment.state, moment.time, ambient, pressing)
+        return contact_rows(now.system, conditions, moment.state, moment.time, ambient)
 
     def _probe_rows(self, moment: Moment) -> list[ProbeRow]:
         """Rows of the probes; every rank calls."""
@@ -278,13 +276,6 @@ class TransientHistory(AnalysisHistory[Moment]):
         stored = state.stored
         field = problem.contact_state(state, moment.time).temperatures if stored is None else stored
         return [] if field is None else probe_rows(problem.system, field.rise, moment.time)
-
-    def _force_per_pressure(self, conditions: InterfaceConditions) -> np.ndarray:
-        """Normal force per pressure at the points (n,) [m²]; those of the last conditions kept."""
-        if self._pressing is None or self._pressing[0] is not conditions:
-            system = self.loop.now.system.with_friction(conditions.friction)
-            self._pressing = conditions, system.force_per_pressure
-        return self._pressing[1]
 
     def _mean(self, values: np.ndarray) -> float:
         """Area mean over the face; of equal values that value, without rounding."""

@@ -140,13 +140,13 @@ class ReciprocatingProblem(WearProblem):
             p, w, own = system.basis @ λ, system.weights, system.contacts.ranges
             terms = (
                 w * (p > 0),
-                system.force_per_pressure * p,
                 w * system.friction * p,
                 w * system.friction * p * system.speed,
             )
-            rows.append([[p[k].max(), *(term[k].sum() for term in terms)] for k in own])
+            sums = [[p[k].max(), *(term[k].sum() for term in terms)] for k in own]
+            rows.append(np.column_stack([sums, system.normal_forces(p)]))
         largest, *means = np.moveaxis(np.array(rows, dtype=float), 2, 0)
-        area, force, friction, power = (self._shares @ mean for mean in means)
+        area, friction, power, force = (self._shares @ mean for mean in means)
         motion = self._shares @ contact.motion
         return CycleContact(largest.max(axis=0), area, force, friction, power, motion)
 

@@ -9,7 +9,7 @@ import numpy as np
 from ...case.assembly.geometry import AssemblyGeometry
 from ...case.assembly.schema import AssemblyCase
 from ...case.assembly.tables import AssemblyContactTable, AssemblyHolderTable, BodyMotionTable
-from ...case.tables.analyses import Fretting, Reciprocating
+from ...case.tables.analyses import Fretting
 from ...case.tables.mesh import MeshTable
 from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh
@@ -18,7 +18,7 @@ from ...model.body import Body
 from ...model.conditions import Heat, Holder, Motion
 from ...model.face_wear import Wear
 from ...model.interface import Interface
-from ...model.model import Discretisation, Model, Zone
+from ...model.model import Discretisation, Model, Zone, hanging_holders
 from ...model.relative_motion import relative_motion
 from ...model.tie import Tie, glued_bodies, with_glued
 from ...model.tracks import EvenTrack, Track
@@ -30,22 +30,27 @@ def assembly_of(case: AssemblyCase) -> Model:
     """Model of a validated case of several bodies."""
     geometry, ties = case.geometry, _ties(case)
     groups = glued_bodies(len(geometry.bodies), ties)
+    bodies = tuple(_body(case, name) for name in geometry.bodies)
+    symmetry = tuple(surface for body in case.bodies.values() for surface in body.symmetry)
+    holders = _holders(case, groups)
+    held = {index for holder in holders for index in holder.bodies}
     return Model(
         kinematics=case.model,
-        bodies=tuple(_body(case, name) for name in geometry.bodies),
+        bodies=bodies,
         interfaces=tuple(
             _interface(case, name, table) for name, table in case.contacts.items() if not table.tie
         ),
-        holders=_holders(case, groups),
+        holders=(*holders, *hanging_holders(case.model, bodies, symmetry, groups, held)),
         meshes=AssemblyMeshes(case.model, geometry, case.mesh, case),
         discretisation=Discretisation(case.mesh.degree, solver=case.mesh.solver),
         heat=None if case.heat is None else Heat(**attributes(Heat, case.heat)),
         thickness=geometry.thickness_factor if case.model.startswith("plane") else None,
         sector=geometry.sector,
-        symmetry=tuple(surface for body in case.bodies.values() for surface in body.symmetry),
+        symmetry=symmetry,
         title=case.title,
         ties=ties,
         probes=probes_of(case.probes),
+        surface_pressures=case.load.pressure,
     )
 
 
@@ -97,12 +102,10 @@ def _body(case: AssemblyCase, name: str) -> Body:
 
 
 def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> Interface:
-    geometry, faces = case.geometry, ordered_faces(case, table)
+    geometry, faces = case.geometry, table.between
+    assert faces is not None  # the case has been checked
     bodies = [geometry.body_of(face) for face in faces]
     one, other = (_motion(case.motions.get(body)) for body in bodies)
-    into_1 = 0.5 if table.partition is None else table.partition
-    if faces != table.between and not isinstance(into_1, str):
-        into_1 = 1.0 - into_1
     history = table.friction_history
     return Interface(
         faces=faces,
@@ -115,7 +118,7 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
         transverse_friction=table.transverse_friction,
         conductance=conductance(table.conductance, f"contacts.{name}.conductance"),
         gap_conductance=table.gap_conductance or 0.0,
-        partition=into_1,
+        partition=0.5 if table.partition is None else table.partition,
         wear={
             side: _wear(case, face, table)
             for side, (body, face) in enumerate(zip(bodies, faces, strict=True))
@@ -127,20 +130,6 @@ def _interface(case: AssemblyCase, name: str, table: AssemblyContactTable) -> In
         initial_shape=table.initial_shape,
         pressure_degree=table.pressure_degree,
     )
-
-
-def ordered_faces(case: AssemblyCase, table: AssemblyContactTable) -> tuple[str, str]:
-    """Faces of a contact; that of a body that turns about a centre is the second one.
-
-    In a reciprocating analysis the first one passes over the second one, whichever moves.
-    """
-    assert table.between is not None  # the case has been checked
-    first, second = table.between
-    if isinstance(case.analysis, Reciprocating):
-        return first, second
-    moves = case.geometry.body_of(first) in case.motions
-    alone = moves and case.geometry.body_of(second) not in case.motions
-    return (second, first) if alone and case.model != "axisymmetric" else (first, second)
 
 
 def _motion(table: BodyMotionTable | None) -> Motion | None:
@@ -189,15 +178,11 @@ def _ties(case: AssemblyCase) -> tuple[Tie, ...]:
 
 
 def _holders(case: AssemblyCase, groups: list[tuple[int, ...]]) -> tuple[Holder, ...]:
-    """Holders; pressures on surfaces are loads of the first one."""
+    """Holders, each with the bodies that are glued to its own."""
     each = [_holder(case, name, table) for name, table in case.holders.items()]
     for holder in each:
         holder["bodies"] = with_glued(holder["bodies"], groups)
-    pressures = [case.load.pressure, *({} for _ in each[1:])]
-    return tuple(
-        Holder(**holder, surface_pressures=given)
-        for holder, given in zip(each, pressures, strict=True)
-    )
+    return tuple(Holder(**holder) for holder in each)
 
 
 def _holder(case: AssemblyCase, name: str, table: AssemblyHolderTable) -> dict:

@@ -56,6 +56,7 @@ def pair_of(case: Case) -> Model:
         symmetry=geometry.symmetry,
         title=case.title,
         probes=probes_of(case.probes),
+        surface_pressures=case.load.pressure,
     )
 
 
@@ -148,7 +149,6 @@ def _holder(case: Case) -> Holder:
         closing_moment=load.moment if free == ("rotation",) else None,
         history=None if load.history is None else load.history.loads,
         surface_forces=load.surfaces,
-        surface_pressures=load.pressure,
     )
 
 

@@ -8,12 +8,11 @@ from typing import Literal
 
 import numpy as np
 from dolfinx import fem
-from scipy.linalg import null_space
 
 from ...bulk.bodies import Bodies
+from ...bulk.mechanics.pins import pin
 from ...bulk.spaces import Spaces
 from ...bulk.waves import Wave
-from ...parallel import sum_over_ranks
 
 Symmetry = Literal["whole", "symmetric", "antisymmetric"]
 """Parity of a mode about the mirror plane of a half model; ``"whole"`` without one."""
@@ -69,11 +68,7 @@ def pinning(
         for members in spaces.groups:
             own = np.zeros(len(fixed), dtype=bool)
             own[spaces.rows(*members)] = True
-            moved = _free(motions * own[:, None], fixed, spaces.comm)
-            free.fields += list(moved.T)
-            while moved.shape[1]:
-                _pin(fixed, moved[:, 0], spaces.comm)
-                moved = _free(moved, fixed, spaces.comm)
+            free.fields += list(pin(fixed, motions * own[:, None], spaces.comm).T)
         return spaces.split(fixed)
 
     return completed
@@ -83,27 +78,6 @@ def _rigid_motions(nodes: np.ndarray, wave: Wave) -> np.ndarray:
     """Rigid motions of all bodies alike that vary as the wave, shape (n_owned, k)."""
     found = wave.rigid_motions(nodes)
     return np.stack([np.zeros(3 * len(nodes)), *(f.ravel() for f in found.values())], axis=1)[:, 1:]
-
-
-def _free(motions: np.ndarray, fixed: np.ndarray, comm) -> np.ndarray:
-    """Combinations of motions (n_owned, k) that move no fixed value, scaled to 1."""
-    if not motions.shape[1]:
-        return motions
-    scale = np.sqrt(sum_over_ranks(comm, (motions**2).sum(axis=0)))
-    scaled = motions / np.where(scale > 0.0, scale, 1.0)
-    held = sum_over_ranks(comm, scaled[fixed].T @ scaled[fixed])
-    combined = scaled @ null_space(held, rcond=1e-12) if held.any() else scaled
-    largest = max(comm.allgather(float(np.abs(combined).max(initial=0.0))))
-    return combined / (largest or 1.0)
-
-
-def _pin(fixed: np.ndarray, motion: np.ndarray, comm) -> None:
-    """Fix the free value that moves most, in place; every rank calls."""
-    movable = np.where(fixed, 0.0, np.abs(motion))
-    own = float(movable.max(initial=0.0))
-    largest = comm.allgather(own)
-    if int(np.argmax(largest)) == comm.rank and own > 0.0:
-        fixed[int(np.argmax(movable))] = True
 
 
 def surface_values(bodies: Bodies, spaces: Spaces, surfaces: tuple[str, ...]) -> np.ndarray:

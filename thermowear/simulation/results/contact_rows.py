@@ -16,7 +16,6 @@ def contact_rows(
     state: InterfaceState,
     time: float,
     ambient: float,
-    force_per_pressure: np.ndarray,
 ) -> list[ContactRow]:
     """Rows of the contacts of several bodies in a state.
 
@@ -30,21 +29,18 @@ def contact_rows(
         [s]
     ambient : float
         Temperature that rises refer to [K].
-    force_per_pressure : ndarray, shape (n,)
-        Normal force per pressure at the points [m²].
     """
     p, nothing = state.pressure, np.full((2, len(state.pressure)), np.nan)
-    forces = force_per_pressure * p
     powers = system.weights * conditions.heating * p
     areas = system.weights * (p > 0)
     kept = system.worn_areas * (state.by_body(system.laws) - system.moved)
     faces = nothing if state.faces is None else np.array(state.faces.rise) + ambient
-    each = zip(system.contacts.ranges, system.lost, strict=True)
+    each = zip(system.contacts.ranges, system.lost, system.normal_forces(p), strict=True)
     return [
         ContactRow(
             time=time,
             contact=number,
-            normal_force=float(forces[own].sum()),
+            normal_force=force,
             friction_power=float(powers[own].sum()),
             max_pressure=float(p[own].max()),
             contact_area=float(areas[own].sum()),
@@ -53,5 +49,5 @@ def contact_rows(
             max_temperature_1=float(faces[0, own].max()),
             max_temperature_2=float(faces[1, own].max()),
         )
-        for number, (own, lost) in enumerate(each, start=1)
+        for number, (own, lost, force) in enumerate(each, start=1)
     ]

@@ -114,7 +114,8 @@ def _of_interface(end: Snapshot, index: int) -> dict:
     return {
         "between": [system.model.bodies[k].name for k in interface.bodies],
         "friction": interface.nominal_friction if constant else None,
-        "normal_force_N": float(system.force_per_pressure[own] @ p),
+        "normal_force_N": system.normal_forces(end.contact.pressure)[index],
+        "contact_force_N": float(w @ p),
         **({"fluid_force_N": fluid[index]} if index in fluid else {}),
         "friction_force_N": friction.force,
         "friction_torque_Nm": friction.torque,

@@ -14,6 +14,7 @@ from ...contact.faces.face import gather_faces
 from ...contact.faces.part_values import PartValues
 from ...contact.operators.pressure import Basis, joined_bases
 from ...contact.operators.rigid_motion import (
+    RigidHolder,
     RigidMode,
     Sliding,
     hold,
@@ -22,6 +23,7 @@ from ...contact.operators.rigid_motion import (
 )
 from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import Pairing
+from ...errors import CaseError
 from ...geometry.mesh.held import check_held, free_motions
 from ...geometry.mesh.mixed import AnyMesh
 from ...model.interface import Interface
@@ -47,6 +49,9 @@ from .thermal_system import (
     heat_partition,
     require_passing,
 )
+
+_NO_CLOSURE = 1e-9
+"""Relative closure of the gap, below which a motion counts as one that no contact resists."""
 
 
 def build(
@@ -130,6 +135,8 @@ def build(
 def check_contact_points(model: Model, comm) -> None:
     """Mesh and pair a model as a run does, to detect errors in either step. Every rank calls.
 
+    Bodies without supports must be held by their contacts.
+
     Raises
     ------
     CaseError
@@ -138,6 +145,48 @@ def check_contact_points(model: Model, comm) -> None:
     bodies = _meshed(model, comm, None, None)
     contacts, _ = _paired(model, comm, kinematics, bodies, None)
     require_passing(model, bodies, contacts)
+    without_loads = np.zeros(len(model.bodies))
+    driven = rigid_modes(model.holders, contacts, lambda motion: without_loads)
+    require_carried(model, contacts, hold(contacts, contacts.normals, driven))
+
+
+def require_carried(model: Model, contacts: Contacts, holder: RigidHolder) -> None:
+    """Reject several bodies that can move together without closing any gap.
+
+    Raises
+    ------
+    CaseError
+    """
+    modes = holder.modes
+    if model.is_pair or not modes.shape[1]:
+        return
+    free_modes = [mode for mode, free in zip(holder.rigid_modes, holder.free, strict=True) if free]
+    moved = [np.linalg.norm(mode.motion.at(contacts.on_body_1)) for mode in free_modes]
+    sizes = np.linalg.norm(modes, axis=0)
+    idle = sizes <= _NO_CLOSURE * np.array(moved)  # but for rounding
+    modes, sizes = np.where(idle, 0.0, modes), np.where(idle, 1.0, sizes)
+    values, directions = np.linalg.eigh(modes.T @ modes / np.outer(sizes, sizes))
+    if values[0] > _NO_CLOSURE:
+        return
+    each = [(one, name) for one in model.holders for name in one.free]
+    free = [pair for pair, loaded in zip(each, holder.free, strict=True) if loaded]
+    parts = np.abs(directions[:, 0]) > 0.1 / len(sizes)
+    moving = [pair for pair, moves in zip(free, parts, strict=True) if moves]
+    for one, name in moving:
+        if one.hanging:
+            up = "y" if model.kinematics.startswith("plane") else "z"
+            along = {"z": f"along {up}", "rotation": "about z"}.get(
+                name, f"about {name[-1]}" if "-" in name else f"along {name}"
+            )
+            raise CaseError(
+                f"bodies.{one.name}: neither its supports nor its contacts hold it {along}; needs "
+                "a support (rollers, mid_plane, fixed) or a holder"
+            )
+    raise CaseError(
+        f"holders: the free motions {', '.join(f'{one.name} ({name})' for one, name in moving)} "
+        "together close no gap, so that nothing carries their loads; fix one of these holders "
+        "(free = []), or give its approach"
+    )
 
 
 def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) -> Bodies:
@@ -152,9 +201,10 @@ def _meshed(model: Model, comm, zone: Zone | None, worn: WornGeometry | None) ->
 
 
 def _check_held(model: Model, mesh: AnyMesh) -> None:
-    """Reject a body that its supports leave free to move."""
+    """Reject a body on no contact alone that its supports leave free to move."""
     clamped, *guided = model.supports
-    for group in model.groups:
+    hanging = [holder.bodies for holder in model.holders if holder.hanging]
+    for group in (one for one in model.groups if one not in hanging):
         bodies = [model.bodies[index] for index in group]
         parts = tuple(part for body in bodies for part in body.parts)
         free = free_motions(mesh, parts, clamped, guided)

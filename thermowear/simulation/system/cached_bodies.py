@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -14,17 +15,20 @@ import scipy.sparse as sp
 from ...bulk.bodies import Bodies
 from ...bulk.kinematics import Kinematics
 from ...bulk.mechanics.elasticity import Elasticity, ElasticMaterial, elasticity
+from ...bulk.mechanics.pins import pin
 from ...bulk.solver_choice import SolverChoice
-from ...bulk.spaces import lagrange_spaces
+from ...bulk.spaces import Spaces, lagrange_spaces
 from ...contact.faces.face import gather_faces
 from ...contact.operators.pressure import Basis
 from ...contact.operators.traces import gap_trace
 from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import Pairing
 from ...contact.ties.joints import elastic_joints, glued_points
+from ...errors import CaseError
 from ...model.conditions import Heat
 from ...model.model import Model
 from ...timer import Phases
+from .rigid_modes import motion_of
 from .setup_cache import CacheKeys, SetupCache
 from .thermal_system import ThermalSystem, thermal_system
 
@@ -131,8 +135,30 @@ def elastic_system(
         choice,
         mid_plane,
         joints=lambda spaces: elastic_joints(spaces, glued),
+        pinned=partial(_pinned, model),
     )
     return elastic, gap_trace(elastic.spaces, contacts)
+
+
+def _pinned(model: Model, spaces: Spaces, supports: list[np.ndarray]) -> list[np.ndarray]:
+    """Supports with as many more values as hanging bodies have free motions. Every rank calls.
+
+    Raises
+    ------
+    CaseError
+        If supports that are not plane prevent such a motion.
+    """
+    fixed, nodes = np.concatenate(supports), spaces.nodes()
+    for holder in (one for one in model.holders if one.hanging):
+        own = np.zeros(len(fixed))
+        own[spaces.rows(*holder.bodies)] = 1.0
+        motions = [own * motion_of(holder, name).at(nodes).ravel() for name in holder.free]
+        if pin(fixed, np.stack(motions, axis=1), spaces.comm).shape[1] < len(holder.free):
+            raise CaseError(
+                f"bodies.{holder.name}: its supports prevent the motion {' or '.join(holder.free)} "
+                "in part, as their surfaces are not plane; fix one, or use a holder"
+            )
+    return spaces.split(fixed)
 
 
 def elastic_materials(model: Model) -> dict[str, ElasticMaterial]:

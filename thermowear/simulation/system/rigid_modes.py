@@ -52,7 +52,7 @@ def rigid_modes(
     """
 
     def mode(holder: Holder, name: str) -> RigidMode:
-        motion, moment, approach = _motion(holder, name), holder.closing_moment, holder.approach
+        motion, moment, approach = motion_of(holder, name), holder.closing_moment, holder.approach
         if holder.free == ("rotation",) and not _closes(motion, holder, contacts):
             motion = rotation((0.0, 0.0, -1.0), np.array(holder.pivot))
         other = float(dead(motion)[list(holder.bodies)].sum())
@@ -71,7 +71,7 @@ def guides(kinematics: str, holder: Holder) -> dict[str, RigidMotion]:
     Along x (and y), upwards, and about the pivot; upwards only in an axisymmetric model.
     """
     up = translation((0.0, 0.0, 1.0) if kinematics == "3d" else (0.0, 1.0))
-    return {name: up if name == "z" else _motion(holder, name) for name in _GUIDED[kinematics]}
+    return {name: up if name == "z" else motion_of(holder, name) for name in _GUIDED[kinematics]}
 
 
 def load_direction(model: Model, interface: Interface, pairing: Pairing) -> np.ndarray:
@@ -84,7 +84,7 @@ def load_direction(model: Model, interface: Interface, pairing: Pairing) -> np.n
     mean = pairing.weights @ pairing.normals
     for sign, body in zip((1.0, -1.0), interface.bodies, strict=True):
         for holder in model.holders:
-            if body in holder.bodies and holder.free:
+            if body in holder.bodies and holder.free and not holder.hanging:
                 direction = sign * np.array(holder.load_direction)
                 return direction if model.is_pair or direction @ mean >= 0.0 else -direction
     return mean / np.linalg.norm(mean)
@@ -97,8 +97,11 @@ def load_directions(model: Model, contacts: Contacts) -> np.ndarray:
     return np.repeat(directions, [len(pairing.weights) for pairing in contacts.each], axis=0)
 
 
-def approaches(first: Holder, motions: Sequence[RigidMotion]) -> np.ndarray:
+def approaches(holders: Sequence[Holder], motions: Sequence[RigidMotion]) -> np.ndarray:
     """Displacement of the pivot of the first holder along its load per rigid mode, (n_modes,)."""
+    if not holders:
+        return np.zeros(0)
+    first = holders[0]
     own, direction = len(first.free), np.array(first.load_direction)
     moved = [motion.at(np.array(first.pivot)) @ direction for motion in motions[:own]]
     return np.array([*moved, *np.zeros(len(motions) - own)], dtype=float)
@@ -122,7 +125,7 @@ def loads_on(holders: Sequence[Holder], holder: Holder, motion: RigidMotion) -> 
     return ((applied(holder, motion), holder.history), *others)
 
 
-def _motion(holder: Holder, name: str) -> RigidMotion:
+def motion_of(holder: Holder, name: str) -> RigidMotion:
     """Motion of the holder by its name, rotations about the pivot anticlockwise."""
     if name in _TURNS:
         return rotation(_TURNS[name], np.array(holder.pivot))
@@ -140,8 +143,7 @@ def dead_load(
     model: Model, contacts: Contacts, elastic: Elasticity, trace: sp.csr_matrix
 ) -> np.ndarray | None:
     """Nodal forces of loads on surfaces and of fluids, shape (n_owned,) [N]; None without them."""
-    each = (works for holder in model.holders for works in surface_loads(holder, elastic))
-    loads = [elastic.spaces.loads(works) for works in each]
+    loads = [elastic.spaces.loads(works) for works in surface_loads(model, elastic)]
     fluid = fluid_pressure(model, contacts)
     if fluid is not None:
         loads.append(trace @ (contacts.weights * fluid))
@@ -169,15 +171,14 @@ def fluid_pressure(model: Model, contacts: Contacts) -> np.ndarray | None:
     return found
 
 
-def surface_loads(holder: Holder, elastic: Elasticity) -> list[list[Callable]]:
+def surface_loads(model: Model, elastic: Elasticity) -> list[list[Callable]]:
     """Forms by body of the work of the loads on surfaces, see `Elasticity`."""
-    direction = np.array(holder.load_direction)
     forces = [
-        elastic.surface_work(surface, force * direction)
+        elastic.surface_work(surface, force * np.array(holder.load_direction))
+        for holder in model.holders
         for surface, force in holder.surface_forces.items()
     ]
-    pressures = holder.surface_pressures.items()
-    return forces + [elastic.pressure_work(*given) for given in pressures]
+    return forces + [elastic.pressure_work(*given) for given in model.surface_pressures.items()]
 
 
 def dead_resultant(

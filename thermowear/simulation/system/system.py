@@ -144,11 +144,22 @@ class System:
         """Load direction of the first body at each point, unit vectors of shape (n, gdim)."""
         return load_directions(self.model, self.contacts)
 
-    @cached_property
-    def force_per_pressure(self) -> np.ndarray:
-        """Normal force along the load direction per pressure at the points, shape (n,) [m²]."""
-        along = np.einsum("ni,ni->n", self.traction_direction, self.load_directions)
-        return self.weights * along
+    def normal_forces(self, pressure: np.ndarray) -> list[float]:
+        """Resultants of the pressure on the faces of each interface, ``|∫ p n dA|`` [N].
+
+        Of the whole body: components cancel along the radius of an axisymmetric model, and across
+        planes of symmetry that cut both bodies.
+        """
+        found = []
+        for interface, (pairing, own) in zip(self.model.interfaces, self.contacts, strict=True):
+            force = (pairing.weights * pressure[own]) @ pairing.normals
+            bodies = [self.model.bodies[body] for body in interface.bodies]
+            cut = [self.model.kinematics == "axisymmetric" or bool(self.model.symmetry)]
+            if self.contacts.in_space:
+                cut += [all(b.rollers for b in bodies), all(b.mid_plane for b in bodies)]
+            force[np.flatnonzero(cut)] = 0.0
+            found.append(float(np.linalg.norm(force)))
+        return found
 
     @cached_property
     def modes_of_holders(self) -> tuple[slice, ...]:
@@ -170,7 +181,7 @@ class System:
     @cached_property
     def approaches(self) -> np.ndarray:
         """Displacement of the pivot of the first holder along its load per mode, (n_modes,)."""
-        return approaches(self.model.holders[0], self.holder.motions)
+        return approaches(self.model.holders, self.holder.motions)
 
     @cached_property
     def mean_pressure(self) -> float:

@@ -241,7 +241,10 @@ def _passage(model: Model, heat: Heat, contacts: Contacts) -> Passage | None:
     moving = [one for one in model.interfaces if not one.motion.at_rest]
     if heat.advection == "none" or not moving:
         return None
-    found = {(one.bodies[1], one.motion.center, _passing_speed(one.motion)) for one in moving}
+    found = {
+        (one.bodies[one.motion.moving_side], one.motion.center, _passing_speed(one.motion))
+        for one in moving
+    }
     if len(found) > 1:
         raise CaseError(
             "heat.advection: several bodies pass others; heat can be carried along by one only"
@@ -291,8 +294,9 @@ def require_passing(model: Model, bodies: Bodies, contacts: Contacts) -> None:
 
 
 def _passing_speed(motion: Motion) -> float:
-    """Velocity of body 2 under body 1 [m/s], or its angular velocity about a centre [rad/s]."""
-    return -(motion.velocity or 0.0) if motion.center is None else motion.angular_velocity or 0.0
+    """Velocity of the moving body [m/s], or its angular velocity about a centre [rad/s]."""
+    of_second = -(motion.velocity or 0.0) if motion.center is None else motion.angular_velocity
+    return of_second or 0.0 if motion.moving_side == 1 else -(of_second or 0.0)
 
 
 def conducting_parts(model: Model) -> dict[str, ThermalMaterial]:

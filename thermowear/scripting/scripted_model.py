@@ -280,9 +280,10 @@ class ScriptedModel:
     def _surface_pressures(self) -> dict[str, float]:
         """Pressures of the model and those given with its holders."""
         found: dict[str, float] = {}
-        for owner, key in ((self, "Model"), *((holder, "Holder") for holder in self.holders)):
-            given = owner.surface_pressures
-            found |= by_surface(units.Pressure, given, f"{key}.surface_pressures")
+        each = [("Model", self.surface_pressures)]
+        each += [("Holder", holder.surface_pressures) for holder in self.holders]
+        for owner, given in each:
+            found |= by_surface(units.Pressure, given, f"{owner}.surface_pressures")
         return found
 
     def _interface(self, pair: FacePair, analysis: Analysis) -> Interface:

@@ -1,17 +1,48 @@
 """Thermoelastic stability of contacts: closed forms, and runs in time that settle or do not."""
 
+from mpi4py import MPI
+
 import numpy as np
 import pytest
 
 import thermowear as tw
 from thermowear.errors import ComputationError
+from thermowear.simulation import Observer
+from thermowear.simulation.analyses.perturbation import PerturbedContact
+from thermowear.simulation.analyses.positioning import prepare
+from thermowear.simulation.analyses.stability import base_state
+from thermowear.simulation.from_case import model_of
+from thermowear.timer import Phases
 
 from ..case.starter import GONE, STEADY, solved, tables
 
+SEAL = "face-seal"
 BLOCKS, STRIP, DISK = "stacked-blocks", "punch-on-strip", "disk-brake-stability"
 STABILITY = {"analysis": {"type": "stability"}}
 STORING = {"density": "7800 kg/m^3", "specific_heat": "460 J/(kg K)"}
 WAVE, DEPTH = 0.02, 0.03
+MESHES = ((1, 80, 1.0), (2, 40, 1.0), (3, 40, 1.0), (4, 20, 1.0), (6, 16, 1.0), (8, 10, 0.3))
+"""Degree, number of elements along the face, and grading."""
+CONVERGING = {
+    DISK: {"motion.angular_velocity": "70 rad/s"},
+    STEADY: {
+        **{f"bodies.punch.{key}": value for key, value in STORING.items()},
+        "motion.angular_velocity": "0.2 rad/s",
+    },
+    BLOCKS: {
+        **{f"bodies.{body}.{k}": v for body in ("upper", "lower") for k, v in STORING.items()},
+        "motion.velocity": "1 m/s",
+    },
+    STRIP: {
+        **{f"bodies.punch.{key}": value for key, value in STORING.items()},
+        "motion.velocity": "-6 mm/s",
+    },
+    SEAL: {
+        **{f"bodies.{body}.{k}": v for body in ("ring", "seat") for k, v in STORING.items()},
+        "motions.seat.angular_velocity": "9000 rpm",
+    },
+}
+"""Five starters above their critical speeds."""
 COARSE = {"mesh": {"degree": 4, "elements": 6, "grading": 0.3}}
 
 
@@ -50,6 +81,44 @@ def test_two_conductors(conductance, share):
     first = modes.speed_factor == result.summary["static_speed_factors"][0]
     wave = np.cos(m * modes.x[first])
     np.testing.assert_allclose(modes.pressure[first] * modes.pressure[first][0], wave, atol=1e-3)
+
+
+def rate_and_critical(case, changes):
+    """Growth rate without wear [1/s], and first static critical factor (0.0 if none)."""
+    model = model_of(tw.load(tables(case, {**STABILITY, **changes})))
+    end, _ = base_state(prepare(model, MPI.COMM_WORLD, Phases()), Observer())
+    contact = PerturbedContact(end.system, end.contact.pressure, end.contact.conditions)
+    return contact.fastest(False).rate.value.real, *np.append(contact.static.factors, 0.0)[:1]
+
+
+@pytest.mark.parametrize("part", [1e-4, 2.0])
+def test_perfect_contact_is_the_limit_of_conductance(part):
+    """requirement: the same rates on a fine uneven mesh; what hardly expands only diffuses."""
+    found = []
+    for conductance in (GONE, "1e9 W/(m^2 K)"):
+        changes = {"mesh": {"degree": 2, "elements": 30, "grading": 1.0}, "heat.conductance": conductance}
+        changes |= {"bodies.disk.expansion": f"{part * 1.1e-5} 1/K", **CONVERGING[DISK]}
+        changes |= {"bodies.pad.expansion": f"{part * 1e-5} 1/K"}
+        found.append(rate_and_critical(DISK, changes))
+    np.testing.assert_allclose(*found, rtol=1e-3)
+    assert (found[0][0] > 0) == (part > 1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", CONVERGING)
+def test_growth_converges_to_that_of_perfect_contact(case):
+    """requirement: growth rates agree on all meshes, and perfect contact is the limit to 1e-3."""
+    for conductance in (tables(case)["heat"].get("conductance", "1e4 W/(m^2 K)"), GONE):
+        found = []
+        for degree, elements, grading in MESHES:
+            mesh = {"degree": degree, "elements": elements, "grading": grading}
+            changes = {"mesh": mesh, **CONVERGING[case], "heat.conductance": conductance}
+            found.append(rate_and_critical(case, changes))
+            print(case, conductance or "perfect", degree, elements, *found[-1])  # with pytest -s
+            if conductance is GONE:
+                limit = rate_and_critical(case, changes | {"heat.conductance": "1e10 W/(m^2 K)"})
+                np.testing.assert_allclose(found[-1], limit, rtol=1e-3)
+        np.testing.assert_allclose(found, np.tile(found[-1], (len(found), 1)), rtol=0.03)
 
 
 def test_rates_need_capacities():

@@ -26,6 +26,8 @@ _REAL = 1e-7
 """Imaginary part, relative to the largest eigenvalue, of those that count as real."""
 _STATIONARY = 1e-10
 """Growth rate, relative to that of diffusion, below which a mode is stationary."""
+_RESOLVED = 1e-13
+"""Eigenvalue of a response, relative to the largest, below which it is rounding."""
 _RANGE, _STRIDE = 1e5, 1.5
 """Search range of an onset around its start, and step of the search, as speed factors."""
 
@@ -126,7 +128,7 @@ def leading(
         return space
     least = np.sort(np.abs(np.linalg.eigvals(matrix)))[-count] * (1 - 1e-9)
     _, vectors, found = schur(matrix, sort=lambda re, im=0.0: abs(complex(re, im)) >= least)
-    strong = vectors[:, :found]
+    strong = vectors[:, : min(found, count + 1)]  # all are equal without friction heat
     answers = np.linalg.solve(space(elastic), space(depths) @ strong)
     columns = orth(np.hstack([strong, answers / np.linalg.norm(answers, axis=0)]))
     return LoadFree(space.pressures @ columns, space.gaps @ columns)
@@ -180,8 +182,8 @@ class PerturbationMatrices:
     stored: np.ndarray
     diffusion_rate: float
 
-    def fastest(self, factor: float, wear: np.ndarray | None = None) -> Rate:
-        """Perturbation with the largest growth rate.
+    def fastest(self, factor: float, wear: np.ndarray | None = None) -> Rate | None:
+        """Perturbation with the largest growth rate; None if none changes.
 
         Parameters
         ----------
@@ -192,18 +194,19 @@ class PerturbationMatrices:
         """
         response, pressure = self._response(factor, wear)
         parts, states = np.linalg.eig(response)
-        rates = self.diffusion_rate + 1 / parts
-        best = int(np.argmax(np.where(self._changes(rates), rates.real, -np.inf)))
-        value, state = complex(rates[best]), states[:, best]
+        changing, rates = self._changing(parts)
+        if not len(rates):
+            return None
+        best = int(np.argmax(rates.real))
+        value, state = complex(rates[best]), states[:, changing[best]]
         if value.imag < 0:
             value, state = value.conjugate(), state.conj()
         return Rate(value, pressure @ state)
 
     def growth(self, factor: float, wear: np.ndarray | None = None) -> float:
         """Largest real part of the rates of nonstationary modes [1/s]."""
-        rates = self.diffusion_rate + 1 / np.linalg.eigvals(self._response(factor, wear)[0])
-        changing = rates[self._changes(rates)]
-        return float(changing.real.max()) if len(changing) else 0.0
+        _, rates = self._changing(np.linalg.eigvals(self._response(factor, wear)[0]))
+        return float(rates.real.max()) if len(rates) else 0.0
 
     def onset(
         self, start: float, wear: Callable[[float], np.ndarray] | None = None
@@ -254,5 +257,12 @@ class PerturbationMatrices:
             flow = np.vstack([flow, wear @ pressure])
         return np.linalg.solve(flow - self.diffusion_rate * storage, storage), pressure
 
-    def _changes(self, rates: np.ndarray) -> np.ndarray:
-        return np.abs(rates) > _STATIONARY * self.diffusion_rate
+    def _changing(self, parts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Indices and rates of the modes that change, by eigenvalues of the response.
+
+        Those that are rounding are left out: their modes decay at once, whatever their sign.
+        """
+        resolved = np.flatnonzero(np.abs(parts) > _RESOLVED * np.abs(parts).max(initial=0.0))
+        rates = self.diffusion_rate + 1 / parts[resolved]
+        changes = np.abs(rates) > _STATIONARY * self.diffusion_rate
+        return resolved[changes], rates[changes]

@@ -230,6 +230,13 @@ class HeatExchange:
         found, _ = self._solve(self._risen(self.face.response, loads))
         return found.reshape(loads.shape)
 
+    def excess(self, unknowns: np.ndarray) -> np.ndarray:
+        """Coefficients z of the basis Ψ (m, k), by columns of unknowns; see `divided`."""
+        coefficients = np.zeros((len(self.scale), unknowns.shape[1]))
+        used = np.flatnonzero(self.scale)
+        coefficients[used] = self.scale[used, None] * unknowns[self._count :]
+        return coefficients
+
     def transposed_response(self, values: np.ndarray) -> np.ndarray:
         """Products ``Gᵀ values``, by columns."""
         if self.face.responses.symmetric:

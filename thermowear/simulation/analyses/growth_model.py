@@ -80,10 +80,13 @@ class GrowthModel:
         assert system.thermal is not None
         self._system, self._thermal = system, system.thermal
         self._conditions, self._elastic, self._space = conditions, elastic, space
-        self._friction = conditions.heating[:, None] * (system.basis @ space.pressures)
+        pressures = system.basis @ space.pressures
+        self._friction = conditions.heating[:, None] * pressures
+        # without friction anywhere disturbances of the temperature decay, by conduction alone
+        self._heat = self._friction if conditions.heating.any() else pressures
         self._steps = HeatSteps(system, system.thermal, 0)
         self._fields = np.zeros((len(system.thermal.conduction.fixed), 0))
-        self._crossing = np.zeros((len(system.weights), 0))
+        self._excess = np.zeros((system.basis.shape[1], 0))
         self._rates: list[float] = []
         extent = min(part.extent for part in system.contacts.each)
         self._diffusion_rate = system.thermal.diffusivity / extent**2
@@ -122,10 +125,11 @@ class GrowthModel:
         bodies = steps.operators if rate == 0.0 else steps.operators_within(1 / rate)
         exchange = bodies.known(self._conditions.conductance).exchange
         assert isinstance(exchange, HeatExchange)
-        crossing = exchange.solved(self._friction)[1]
-        loads = exchange.loads(self._friction)
-        heat = loads + exchange.coupling @ exchange.response(loads)  # bath included
-        self._extend(bodies.conduction.respond(exchange.face.on_nodes(heat)), crossing)
+        loads = exchange.loads(self._heat)
+        unknowns = exchange.response(loads)
+        heat = loads + exchange.coupling @ unknowns  # bath included
+        fields = bodies.conduction.respond(exchange.face.on_nodes(heat))
+        self._extend(fields, exchange.excess(unknowns))
         self._rates.append(rate)
 
     def matrices(self) -> PerturbationMatrices:
@@ -136,8 +140,13 @@ class GrowthModel:
         T1, T2 = at_faces(X, thermal.face.traces, system.comm)
         weights = system.weights[:, None]
         f = np.reshape(thermal.face.partition, (-1, 1))
-        exchanged = weights * self._crossing  # each field satisfies the interface heat law
-        kept = self._product(conduction.conductivity, X) + (T2 - T1).T @ exchanged
+        direct, _, resistance = thermal.face.divided(self._conditions.conductance)
+        jump, excess = T2 - T1, system.basis @ self._excess
+        # the jump that the excess does not pass is its resistance times it: no product of both,
+        # which vanishes in perfect contact but for rounding times large heat of rough fields
+        kept = self._product(conduction.conductivity, X)
+        kept += jump.T @ (weights * direct[:, None] * jump)
+        kept += excess.T @ (weights * resistance[:, None] * excess)
         kept += conduction.joints.passed(conduction.spaces, X)
         carried = np.zeros((X.shape[1],) * 2)
         if conduction.advection is not None:
@@ -152,19 +161,21 @@ class GrowthModel:
             diffusion_rate=self._diffusion_rate,
         )
 
-    def _extend(self, fields: np.ndarray, crossing: np.ndarray) -> None:
-        """Extend the orthonormal space by fields (n_owned, q) with their heat exchange (n, q)."""
+    def _extend(self, fields: np.ndarray, excess: np.ndarray) -> None:
+        """Extend the orthonormal space by fields (n_owned, q) with their excess heat (m, q)."""
         for least in (_NEW, 0.0):  # twice, as the rest of a small difference is not orthogonal
-            scale = 1 / np.sqrt(np.diag(self._gram(fields, fields)))
+            sizes = np.diag(self._gram(fields, fields))
+            fields, excess = fields[:, sizes > 0.0], excess[:, sizes > 0.0]  # no friction: no heat
+            scale = 1 / np.sqrt(sizes[sizes > 0.0])
             known = self._gram(self._fields, fields * scale)
             fields = fields * scale - self._fields @ known
-            crossing = crossing * scale - self._crossing @ known
+            excess = excess * scale - self._excess @ known
             sizes, mixing = np.linalg.eigh(self._gram(fields, fields))
             kept = sizes > least
             combined = mixing[:, kept] / np.sqrt(sizes[kept])
-            fields, crossing = fields @ combined, crossing @ combined
+            fields, excess = fields @ combined, excess @ combined
         self._fields = np.hstack([self._fields, fields])
-        self._crossing = np.hstack([self._crossing, crossing])
+        self._excess = np.hstack([self._excess, excess])
 
     def _gram(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
         return sum_over_ranks(self._system.comm, left.T @ right)

@@ -5,6 +5,7 @@ Linear, with the thermal conductance of the base state; its own temperatures do 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 
@@ -15,6 +16,7 @@ from ...errors import CaseError
 from ...laws.stability import (
     LoadFree,
     PerturbationMatrices,
+    Rate,
     StaticModes,
     leading,
     load_free,
@@ -71,12 +73,10 @@ class PerturbedContact:
         """Static modes, each at its own critical speed."""
         return static_modes(self._elastic, self._thermal, self._space)
 
-    def fastest(self, wears: bool) -> PerturbationMode:
-        """Perturbation with the largest growth rate (real part) at the given speed."""
+    def fastest(self, wears: bool) -> PerturbationMode | None:
+        """Perturbation with the largest growth rate at the given speed; None if none changes."""
         wear = self._wear(1.0) if wears else None
-        found = self._model.refined(lambda small: PerturbationMode(1.0, small.fastest(1.0, wear)))
-        assert found is not None
-        return self._full_mode(found)
+        return self._refined(lambda small: (1.0, small.fastest(1.0, wear)))
 
     def onset(self, wears: bool) -> PerturbationMode | None:
         """First perturbation to grow with increasing speed; None if none does."""
@@ -95,16 +95,15 @@ class PerturbedContact:
     def _onset(self, wears: bool, start: float) -> PerturbationMode | None:
         wear = self._wear if wears else None
 
-        def find(small: PerturbationMatrices) -> PerturbationMode | None:
+        def find(small: PerturbationMatrices) -> tuple[float, Rate | None]:
             nonlocal start
             factor = small.onset(start, wear)
             if factor is None:
-                return None
+                return 1.0, None
             start = 0.95 * factor
-            return PerturbationMode(factor, small.fastest(factor, wear and wear(factor)))
+            return factor, small.fastest(factor, wear and wear(factor))
 
-        found = self._model.refined(find)
-        return None if found is None else self._full_mode(found)
+        return self._refined(find)
 
     def _at(self, factor: float) -> PerturbedContact:
         """Perturbed contact at another speed."""
@@ -113,8 +112,18 @@ class PerturbedContact:
         conditions = replace(self._conditions, speed=factor * self._conditions.speed)
         return PerturbedContact(system, self._pressure, conditions)
 
-    def _full_mode(self, found: PerturbationMode) -> PerturbationMode:
-        """Mode with its shape in the whole pressure space."""
+    def _refined(
+        self, find: Callable[[PerturbationMatrices], tuple[float, Rate | None]]
+    ) -> PerturbationMode | None:
+        """Mode by its factor and rate in a refined model, with its shape in the whole space."""
+
+        def mode(small: PerturbationMatrices) -> PerturbationMode | None:
+            factor, rate = find(small)
+            return None if rate is None else PerturbationMode(factor, rate)
+
+        found = self._model.refined(mode)
+        if found is None:
+            return None
         shape = self._reduced.pressures @ found.rate.shape
         return replace(found, rate=replace(found.rate, shape=shape))
 

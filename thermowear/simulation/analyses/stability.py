@@ -87,7 +87,7 @@ def _in_time(system: System, contact: PerturbedContact) -> tuple[dict, list[Pert
     if system.laws:
         onset = worn = contact.onset(True)
         fastest = contact.fastest(True)
-    modes = [fastest] if fastest.rate.value.real > 0 else []
+    modes = [fastest] if fastest is not None and fastest.rate.value.real > 0 else []
     if onset is not None and onset.rate.value.imag > 0:
         modes.append(onset)
     return _keys(system, critical, worn, fastest, unworn), modes

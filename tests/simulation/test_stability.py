@@ -96,7 +96,8 @@ def test_perfect_contact_is_the_limit_of_conductance(part):
     """requirement: the same rates on a fine uneven mesh; what hardly expands only diffuses."""
     found = []
     for conductance in (GONE, "1e9 W/(m^2 K)"):
-        changes = {"mesh": {"degree": 2, "elements": 30, "grading": 1.0}, "heat.conductance": conductance}
+        mesh = {"degree": 2, "elements": 30, "grading": 1.0}
+        changes = {"mesh": mesh, "heat.conductance": conductance}
         changes |= {"bodies.disk.expansion": f"{part * 1.1e-5} 1/K", **CONVERGING[DISK]}
         changes |= {"bodies.pad.expansion": f"{part * 1e-5} 1/K"}
         found.append(rate_and_critical(DISK, changes))

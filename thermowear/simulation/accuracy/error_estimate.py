@@ -135,7 +135,7 @@ def estimate_errors(analysis: Analysis, end: Snapshot, time: float) -> ErrorEsti
     elif change is None:
         missing["shape"] = missing["pressure"]
     else:
-        errors["shape"] = _of_shape(end, change, shaped)
+        errors["shape"] = _of_shape(end, change, shaped, ~(steady & system.at_rest))
     return ErrorEstimates(errors, missing)
 
 
@@ -183,10 +183,10 @@ def _shaped(end: Snapshot, steady: bool) -> list[slice]:
     return [points for points in system.contacts.ranges if np.ptp(interface.shape[points]) > flat]
 
 
-def _of_shape(end: Snapshot, change: np.ndarray, shaped: list[slice]) -> float:
-    """Error of the shape from its change in contact, up to motions of the holders."""
+def _of_shape(end: Snapshot, change: np.ndarray, shaped: list[slice], worn: np.ndarray) -> float:
+    """Error of the shape from its change where worn (n,) points press, up to holders' motions."""
     system, interface = end.system, end.interface
-    pressing = interface.pressure > 0
+    pressing = (interface.pressure > 0) & worn
     modes, own = system.holder.modes[pressing], change[pressing]
     roots = np.sqrt(system.weights[pressing])
     motion = np.linalg.lstsq(modes * roots[:, None], own * roots, rcond=None)[0]
@@ -269,6 +269,8 @@ def _wear_per_pressure(system: System, interface: InterfaceFields) -> np.ndarray
 def _coarser_principle(end: Snapshot) -> np.ndarray:
     """Steady pressure by a coarser quadrature, the only discretisation error of the principle."""
     system, contact = end.system, end.contact
+    if system.at_rest.any():
+        raise ComputationError("contacts at rest keep their elastic pressure")
     if system.worn is not None:
         raise ComputationError("the meshes were moved to the worn faces")
     if any("T" in law.variables for law in system.laws.values()):

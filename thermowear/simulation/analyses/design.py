@@ -10,7 +10,6 @@ from scipy.spatial import cKDTree
 from ...contact.faces.face import Face, Surface
 from ...errors import ComputationError
 from ...geometry.cad.design import Design
-from ...laws.principle.least_worn import least_worn
 from ..interface.body_state import body_state
 from ..interface.steady import steady_state
 from ..results.recording import along_load
@@ -42,11 +41,10 @@ def steady_design(system: System, number: int, side: int) -> Design:
     found = steady_state(system)
     state = body_state(system, found.contact)
     state.require_balance()
-    pressure, gap = found.wear.pressure, system.contacts.gap
+    pressure, gap = found.contact.pressure, system.contacts.gap
     open_by = state.opening + system.softness * pressure + gap
-    modes = system.holder.modes
-    position = least_worn(modes, open_by, system.weights, pressure > 0)
-    depth = np.maximum(modes @ position - open_by, 0.0)
+    position = found.position(system, open_by)
+    depth = np.maximum(system.holder.modes @ position - open_by, 0.0)
     own, pairing = system.contacts.ranges[number], system.contacts.each[number]
     if not np.any(pressure[own] > 0):
         table = system.model.interfaces[number].table

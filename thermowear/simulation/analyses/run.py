@@ -91,12 +91,12 @@ def run(
 def needs_single_solution(model: Model, analysis: Analysis) -> bool:
     """Test whether an analysis solves its bodies for one load only, and needs no compliance.
 
-    That is the steady state of wear with material properties that do not depend on temperature.
+    That is the steady state of wear with material properties that do not depend on temperature,
+    and without contacts at rest.
     """
-    return analysis.type == "steady" and not any(
-        material.expansion_factor or material.conductivity_factor
-        for material in model.materials.values()
-    )
+    varying = any(m.expansion_factor or m.conductivity_factor for m in model.materials.values())
+    resting = any(interface.motion.at_rest for interface in model.interfaces)
+    return analysis.type == "steady" and not varying and not resting
 
 
 def solve(

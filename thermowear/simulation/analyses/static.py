@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from ...errors import ComputationError
-from ...laws.principle.least_worn import least_worn
 from ...results import Result
 from ..interface.body_state import body_state
 from ..interface.interface_problem import InterfaceProblem, interface_problem
@@ -50,21 +49,23 @@ def steady(system: System, observer: Observer) -> tuple[Snapshot, Result]:
         contact = found.contact
         state = body_state(system, contact)
     wear = found.wear
-    pressing = wear.pressure > 0
+    pressing = contact.pressure > 0
     _require_positions(system, pressing)
-    # holder position of least material removal for conforming faces
-    opening = state.opening + system.softness * wear.pressure
-    position = least_worn(system.holder.modes, opening, system.weights, pressing)
+    opening = state.opening + system.softness * contact.pressure
+    position = found.position(system, opening)
     height = system.holder.modes @ position - opening
     shape = np.full(len(height), np.nan)  # unknown where wear has unloaded the contact
     for own in system.contacts.ranges:
         shape[own] = np.fmax.reduce(np.where(pressing, height, np.nan)[own]) - height[own]
+    gap, at_rest = np.where(pressing, 0.0, np.nan), system.at_rest
+    shape[at_rest] = 0.0
+    gap[at_rest] = (system.contacts.gap - system.holder.imposed - height)[at_rest]
     end = record(
         system,
         contact,
         system.motions(system.holder.amplitudes(position)),
         state,
-        gap=np.where(pressing, 0.0, np.nan),
+        gap=gap,
         shape=shape,
         worn=np.zeros((2, len(shape))),
     )

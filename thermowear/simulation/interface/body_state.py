@@ -58,24 +58,37 @@ class BodyState:
             require(heat_balance_relative_error=self.temperatures.error)
 
 
-def body_state(system: System, contact: ContactState) -> BodyState:
-    """Solve the bodies for given contact loads. Every rank calls."""
+def opening_by(system: System, contact: ContactState) -> np.ndarray:
+    """Change of the gap at the contact points (n,) by load and heat [m]; every rank calls."""
     system = system.with_friction(contact.conditions.friction)
-    pressure, shear, temperatures = contact.pressure, contact.shear, contact.temperatures
-    hottest, strained = float("nan"), np.zeros(len(system.elastic.fixed))
-    loads = system.traction @ (system.weights * pressure)
-    if shear is not None:
-        along = vector_trace(system.elastic.spaces, system.contacts, -shear)
+    displacement = system.elastic.solve(_loads(system, contact)[0])
+    return sum_over_ranks(system.comm, system.trace.T @ displacement)
+
+
+def _loads(system: System, contact: ContactState) -> tuple[np.ndarray, np.ndarray]:
+    """Nodal loads, and their part by constrained thermal expansion, shape (n_owned,) [N]."""
+    loads = system.traction @ (system.weights * contact.pressure)
+    if contact.shear is not None:
+        along = vector_trace(system.elastic.spaces, system.contacts, -contact.shear)
         loads = loads + along @ system.weights
     if system.dead_load is not None:
         loads = loads + system.dead_load
+    strained = np.zeros(len(system.elastic.fixed))
+    if contact.temperatures is not None and system.thermal is not None:
+        strained = system.thermal.forces(contact.temperatures.rise)
+    return loads + strained, strained
+
+
+def body_state(system: System, contact: ContactState) -> BodyState:
+    """Solve the bodies for given contact loads. Every rank calls."""
+    system = system.with_friction(contact.conditions.friction)
+    temperatures, hottest = contact.temperatures, float("nan")
+    loads, strained = _loads(system, contact)
     if temperatures is not None and system.thermal is not None:
-        strained = system.thermal.forces(temperatures.rise)
         if system.choice.solves_once:
             system.thermal.conduction.release()
         highest = max(system.comm.allgather(float(temperatures.rise.max(initial=-np.inf))))
         hottest = max(highest, float(np.max(temperatures.faces.rise))) + system.thermal.ambient
-    loads = loads + strained
     displacement = system.elastic.solve(loads)
     opening = sum_over_ranks(system.comm, system.trace.T @ displacement)
     supports = support_forces(system, displacement, loads, strained)

@@ -150,7 +150,7 @@ class CondensedMethod:
         """Steady-state principle in the pressure space.
 
         The wear rates, weighted by the basis functions, equal the rigid-body wear velocity. That is
-        an implicit step of wear of rigid bodies.
+        an implicit step of wear of rigid bodies. Contacts at rest keep their pressure, elastically.
         """
         contact, load = self._with_friction(conditions.friction), conditions.load
         coefficients = contact.projected(pressure)
@@ -159,10 +159,15 @@ class CondensedMethod:
         start = ContactSolution(
             pressure, no_motion, SignoriniSolution(coefficients, no_motion, active)
         )
-        rigid, thermal_gap = np.zeros_like(contact.compliance), np.zeros(len(coefficients))
-        space = self._space(contact, pointwise)
+        resting = abs(contact.basis).T @ self._system.at_rest > 0.0
+        rigid = np.diag(np.where(resting, np.diag(contact.compliance), 0.0))
+        thermal_gap, space = -rigid @ coefficients, self._space(contact, pointwise)
         if space is not None:
-            space = replace(space, local_compliance=np.zeros_like(space.local_compliance))
+            still = np.zeros_like(space.local_compliance)
+            space = replace(space, local_compliance=still, **self._divided(space))
+        else:
+            contact = replace(contact, **self._divided(contact))
+        load = np.hstack(self._system.divided_motions).T @ load
         return newton_with_wear(
             lambda worn, slope, last: self._solved(
                 contact, space, rigid, thermal_gap, worn, slope, last, load
@@ -170,6 +175,14 @@ class CondensedMethod:
             rates,
             start,
         ).pressure
+
+    def _divided(self, space: CondensedContact | EdgeSpace) -> dict[str, np.ndarray]:
+        """Modes that wear admits, of the sliding contacts, and others, of contacts at rest."""
+        admitted, pressing = self._system.divided_motions
+        resting = (abs(space.basis).T @ self._system.at_rest > 0.0)[:, None]
+        modes = [~resting * (space.modes @ admitted), resting * (space.modes @ pressing)]
+        forces = [~resting * (space.force_modes @ admitted), space.force_modes @ pressing]
+        return {"modes": np.hstack(modes), "force_modes": np.hstack(forces)}
 
     def largest_deflection(self, contact: ContactSolution) -> float:
         return float(self._opened(contact).max())

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
+from ...contact.operators.pressure import dense, scaled
+from ...contact.solvers.signorini import NoEquilibrium, solve_contact
+from ...errors import ComputationError
+from ...laws.principle.least_worn import least_worn
 from ...laws.principle.steady import NotCarried, SteadyWear, steady_pressure
 from ..heat.friction_heat import friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.fluid import parted_by_fluid
 from ..system.system import System
+from .body_state import opening_by
 from .equilibrium import ContactState
 from .fixed_point import Trial, self_consistent
 
@@ -27,18 +33,38 @@ class SteadyState:
     Attributes
     ----------
     wear : SteadyWear
+        Of the sliding contacts.
     contact : ContactState
+    resting : ndarray, shape (k,)
+        Free motions of the holders in the equilibrium of the contacts at rest [m or rad].
     """
 
     wear: SteadyWear
     contact: ContactState
+    resting: np.ndarray
+
+    def position(self, system: System, opening: np.ndarray) -> np.ndarray:
+        """Free motions (k,) of the holders of the least material removal for conforming faces.
+
+        Contacts at rest keep their equilibrium.
+
+        Parameters
+        ----------
+        system : System
+        opening : ndarray, shape (n,)
+            Change of the gap by load and heat [m].
+        """
+        modes, (worn, _) = system.holder.modes, system.divided_motions
+        pressing, left = self.wear.pressure > 0, opening - modes @ self.resting
+        return self.resting + worn @ least_worn(modes @ worn, left, system.weights, pressing)
 
 
 def steady_state(system: System) -> SteadyState:
     """Steady pressure, wear rates and rigid-body wear velocity of a system. Every rank calls.
 
     State-dependent friction, wear or conductance are resolved by fixed-point iteration. Faces with
-    layers have lost them: wear that goes on for ever ends in the substrate.
+    layers have lost them: wear that goes on for ever ends in the substrate. The principle governs
+    the contacts that slide; those at rest are in elastic contact.
 
     Raises
     ------
@@ -52,9 +78,10 @@ def steady_state(system: System) -> SteadyState:
     start = Trial(uniform, None if heat is None else heat.steps.steady.baseline.unheated, zeros)
 
     wear: SteadyWear | None = None
+    motion = np.zeros(system.holder.modes.shape[1])
 
     def respond(conditions: InterfaceConditions) -> Trial:
-        nonlocal wear
+        nonlocal wear, motion
         wear = principle(
             system.with_friction(conditions.friction),
             conditions.load,
@@ -63,26 +90,87 @@ def steady_state(system: System) -> SteadyState:
             temperature=conditions.temperature,
             friction=conditions.friction,
         )
-        faces = None if heat is None else heat.steps.steady.faces(conditions, wear.pressure)
-        return Trial(wear.pressure, faces, zeros)
+        pressure = wear.pressure
+        if system.at_rest.any():
+            temperatures = None if heat is None else heat.steady(conditions, pressure)
+            carried = ContactState(pressure, conditions, temperatures)
+            borne, motion = _at_rest(system.with_friction(conditions.friction), carried)
+            pressure = pressure + borne
+        faces = None if heat is None else heat.steps.steady.faces(conditions, pressure)
+        return Trial(pressure, faces, zeros)
 
     conditions, found = self_consistent(ConditionModel(system), 0.0, start, respond, _NONE)
     temperatures = None if heat is None else heat.steady(conditions, found.pressure)
     assert wear is not None
-    return SteadyState(wear, ContactState(found.pressure, conditions, temperatures))
+    return SteadyState(wear, ContactState(found.pressure, conditions, temperatures), motion)
 
 
-def principle(system: System, load: np.ndarray, **conditions) -> SteadyWear:
-    """Solve the principle under a load on the holder and conditions as in `steady_pressure`."""
+def principle(system: System, load: np.ndarray, speed: np.ndarray, **conditions: Any) -> SteadyWear:
+    """Solve the principle under a load on the holder and conditions as in `steady_pressure`.
+
+    For the contacts that slide, and motions of the holders that contacts at rest admit.
+
+    Raises
+    ------
+    ComputationError
+        If there is no solution.
+    """
+    at_rest, (worn, _) = system.at_rest, system.divided_motions
+    pairs = zip(system.model.interfaces, system.contacts.ranges, strict=True)
+    stops = [one.table for one, points in pairs if not speed[points].all()]
+    sliding = [one.table for one in system.model.interfaces if not one.motion.at_rest]
+    if any(table in sliding for table in stops) or not sliding:
+        raise ComputationError(
+            f"{stops[0] if not system.model.is_pair else 'motion'}: no steady state: the sliding "
+            "speed is 0 at some contact points"
+        )
+    if worn.shape[1] == 0:
+        raise ComputationError(
+            f"{stops[0]}: no steady state: this contact does not slide, and no holder moves as "
+            "others wear without moving against it; give the worn body a holder, or glue the "
+            "bodies"
+        )
+    modes, forces = (
+        np.where(at_rest[:, None], 0.0, each @ worn)
+        for each in (system.holder.modes, system.holder.force_modes)
+    )
     try:
-        return steady_pressure(
-            weights=system.weights,
-            normal_modes=system.holder.modes,
-            force_modes=system.holder.force_modes,
-            load=load,
+        found = steady_pressure(
+            weights=np.where(at_rest, 0.0, system.weights),
+            normal_modes=modes,
+            force_modes=forces,
+            load=worn.T @ load,
             laws=list(system.laws.values()),
+            speed=np.where(at_rest, 1.0, speed),  # of any size: without motions nothing presses
             spread=list(system.spreads.values()),
             **conditions,
         )
     except NotCarried as error:
         raise parted_by_fluid(system, load) or error from None
+    return replace(found, velocity=worn @ found.velocity)
+
+
+def _at_rest(system: System, carried: ContactState) -> tuple[np.ndarray, np.ndarray]:
+    """Pressure (n,) of contacts at rest, and motions (k,) of the holders that press them.
+
+    Signorini's conditions between bodies under the loads of the sliding contacts.
+    """
+    contact, (_, pressing) = system.contact, system.divided_motions
+    own = np.flatnonzero(abs(contact.basis).T @ system.at_rest)
+    opening = opening_by(system, carried) + system.contacts.gap - system.holder.imposed
+    soft = dense(contact.weighted.T @ scaled(system.softness, contact.basis))
+    taken = system.holder.force_modes.T @ (system.weights * carried.pressure)
+    try:
+        found = solve_contact(
+            (contact.compliance + soft)[np.ix_(own, own)],
+            contact.weak(opening)[own],
+            contact.modes[own] @ pressing,
+            pressing.T @ (carried.conditions.load - taken),
+        )
+    except NoEquilibrium as error:
+        resting = [one.table for one in system.model.interfaces if one.motion.at_rest]
+        raise ComputationError(
+            f"no steady state: {', '.join(resting)} at rest: {error}; change the forces of the "
+            "holders"
+        ) from None
+    return contact.basis[:, own] @ found.coefficients, pressing @ found.motion

@@ -54,7 +54,7 @@ def steady_limit(
         return replace(last, edge=state.pointwise)
     conditions = steady.contact.conditions
     rates = edge.wear.final_rates(conditions)
-    pressure = edge.method.steady(steady.wear.pressure, rates, conditions, points)
+    pressure = edge.method.steady(steady.contact.pressure, rates, conditions, points)
     return SteadyLimit(steady, state.pointwise, points, pressure)
 
 

@@ -43,6 +43,9 @@ from .rigid_modes import approaches, dead_resultant, load_directions
 from .setup_cache import CacheKeys, SetupCache
 from .thermal_system import ThermalSystem
 
+_DEPENDENT = 1e-10
+"""Relative singular value below which motions are linearly dependent."""
+
 
 @dataclass(frozen=True)
 class System:
@@ -198,6 +201,28 @@ class System:
     def at_singular_edges(self) -> np.ndarray:
         """Points at edges where unworn bodies have a singular pressure, (n,). Every rank calls."""
         return singular_points(self.bodies, self.contacts, self.softness)
+
+    @cached_property
+    def at_rest(self) -> np.ndarray:
+        """Points of contacts without sliding, bool of shape (n,)."""
+        return self.contacts.per_point([one.motion.at_rest for one in self.model.interfaces]) > 0
+
+    @cached_property
+    def divided_motions(self) -> tuple[np.ndarray, np.ndarray]:
+        """Free motions of the holders, by columns: that contacts at rest admit, and do not.
+
+        Shapes (k, a) and (k, b) with a + b = k. Contacts at rest neither open nor close by the
+        first, as wear goes on.
+        """
+        modes = self.holder.modes[self.at_rest]
+        size = np.abs(modes).max(axis=0, initial=0.0)
+        if not size.any():
+            return np.eye(len(size)), np.zeros((len(size), 0))
+        size[size == 0.0] = 1.0
+        _, values, rows = np.linalg.svd(modes / size)
+        rank = int((values > _DEPENDENT * values[0]).sum())
+        columns = rows.T / size[:, None]
+        return columns[:, rank:], columns[:, :rank]
 
     @cached_property
     def friction(self) -> np.ndarray:

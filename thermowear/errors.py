@@ -67,10 +67,20 @@ class CaseNote(UserWarning):
     """Warning about valid but unusual input of a case; printed by the command line."""
 
 
+class RunNote(CaseNote):
+    """Warning about a result; notes of runs without an observer of their own."""
+
+
 def note(text: str) -> None:
     """Warn about unusual input of a case, attributed to the caller of the calling function."""
     _release_warnings()
     warnings.warn(CaseNote(text), stacklevel=3)
+
+
+def run_note(text: str) -> None:
+    """Warn about a result, in runs that nothing observes."""
+    _release_warnings()
+    warnings.warn(RunNote(text), stacklevel=3)
 
 
 def _release_warnings() -> None:

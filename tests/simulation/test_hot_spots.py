@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from thermowear.case import load
-from thermowear.errors import CaseError, ComputationError
+from thermowear.errors import CaseError, ComputationError, RunNote
 from thermowear.laws.wave_modes import first_critical
 from thermowear.model.analyses import StabilityAnalysis
 from thermowear.simulation import Observer
@@ -72,6 +72,26 @@ def test_layer_between_half_planes(m):
             continue  # oblique waves come first in a column of this width
         assert speeds[name][0][0] == pytest.approx(speed, rel=1e-3)
         assert speeds[name][0][1] == pytest.approx(drift, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("conductance", "exact"),
+    [pytest.param("1e4", 119.46, marks=pytest.mark.slow), ("1e8", 197.04)],
+)
+def test_thin_skins_are_told(conductance, exact):
+    """requirement: errors by elements larger than the thermal skin are within their estimate.
+
+    Critical speeds [rad/s] are those of finer rows at the contact; Python callers are warned.
+    """
+    changes = {"analysis.hot_spots": [5], "mesh.degree": 3, "mesh.elements": 4}
+    changes["heat.conductance"] = f"{conductance} W/(m^2 K)"
+    with pytest.warns(RunNote, match=r"critical speed of hot spots is (uncertain|not resolved)"):
+        summary = run_case(load(case_tables("disk-brake-stability", changes))).summary
+    error = abs(summary["first_hot_spots_angular_velocity_rad_per_s"] / exact - 1)
+    error = error / (1 + error)  # of factors
+    estimate = summary["first_hot_spots_error_estimate_relative"]
+    assert error < 1.5 * estimate
+    assert (estimate > 0.5) == (conductance == "1e8")
 
 
 def test_modes_without_waves_are_those_of_bands(found):

@@ -19,6 +19,7 @@ from ..system.system import System
 from .mode_fields import SIGNS, mode_fields
 from .requirements import require_waves
 from .search import CriticalWaves, growth, refined, search
+from .skin import skin_error
 from .supports import Symmetry
 from .wave_model import WaveModel
 
@@ -26,6 +27,8 @@ _NAN = float("nan")
 _REMEDY = "refine the mesh, or resolve the thermal skin (mesh.skin)"
 _COARSE = 0.01
 """Error estimate from which the mesh is reported as too coarse."""
+_UNRESOLVED = 0.5
+"""Error estimate from which the critical speed is not known."""
 
 
 def hot_spots(
@@ -184,7 +187,10 @@ def _error_estimate(
     base: Callable[[System, Observer], tuple[Snapshot, Result]],
     first: CriticalWaves,
 ) -> dict[str, Any]:
-    """Relative change of the first critical speed by elements of one degree more."""
+    """Relative error of the first critical speed.
+
+    By elements of one degree more, and by thermal skins that no degree resolves.
+    """
     system, discretisation = end.system, end.system.model.discretisation
     finer = replace(discretisation, degree=discretisation.degree + 1, positioning=False)
     try:
@@ -194,8 +200,18 @@ def _error_estimate(
         return {"error_estimate_missing": {"first_hot_spots": str(reason)}}
     if factor is None:
         return {"error_estimate_missing": {"first_hot_spots": "no mode on finer elements"}}
-    error = abs(factor / first.factor - 1.0)
-    if error > _COARSE:
+    model, mode = _wave_model(end, analysis), first.without_wear
+    assert mode is not None
+    of_skin, skins = skin_error(model, model.at(first.number, first.symmetry), mode)
+    error = max(abs(factor / first.factor - 1.0), of_skin)
+    if error > _UNRESOLVED:
+        thin = ", ".join(f"{name} {1e6 * skin:.2g} µm" for name, skin in skins.items())
+        observer.note(
+            "the critical speed of hot spots is not resolved by the mesh"
+            + f": thermal skins are thin ({thin})" * bool(skins)
+            + "; use rows as thin at the contact (mesh.skin), or more elements of a higher degree"
+        )
+    elif error > _COARSE:
         observer.note(
             f"the critical speed of hot spots is uncertain by about {100 * error:.2g} %; refine "
             "the mesh: more elements, a higher degree, or thinner rows at the contact (mesh.skin)"

@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from mpi4py import MPI
+
 import numpy as np
 
-from ...errors import CaseError, other_mesh
+from ...errors import CaseError, other_mesh, run_note
 from ...results import (
     ContactRow,
     CycleRow,
@@ -153,7 +155,9 @@ class Observer:
         """
 
     def note(self, text: str) -> None:
-        """A note for the user."""
+        """A note for the user; by default a warning on the first rank."""
+        if MPI.COMM_WORLD.rank == 0:
+            run_note(text)
 
     def output(
         self,

@@ -1,5 +1,7 @@
 """Thermoelastic stability of contacts: closed forms, and runs in time that settle or do not."""
 
+import warnings
+
 from mpi4py import MPI
 
 import numpy as np
@@ -219,6 +221,27 @@ def test_the_load_does_not_matter():
         for force in ("300 N", "3 kN")
     ]
     assert found[0] == pytest.approx(found[1], rel=1e-7)
+
+
+@pytest.mark.parametrize("speed", [20.0, 50.0])
+@pytest.mark.parametrize("kind", ["steady", "initial"])
+def test_hot_states_tell_their_critical_speed(kind, speed):
+    """requirement: the static one of a stability analysis; an unstable state is noted."""
+    changes = {**COARSE, "motion.angular_velocity": f"{speed} rad/s"}
+    found = solved(DISK, changes)
+    if kind == "initial":
+        changes["bodies.pad.expansion"] = changes["bodies.disk.expansion"] = "1e-6 1/K"
+        changes["load.force"] = "3 kN"
+        found = solved(DISK, {**changes, "wear": GONE})
+    with warnings.catch_warnings(record=True) as notes:
+        warnings.simplefilter("always")
+        summary = solved(DISK, {**changes, "analysis": {"type": kind}}).summary
+    factor = found.summary["static_speed_factors"][0]
+    assert summary["critical_speed_factor"] == pytest.approx(factor, rel=1e-6)
+    critical = summary["critical_angular_velocity_rad_per_s"]
+    assert critical == pytest.approx(factor * speed, rel=1e-6)
+    said = any("hot state is unstable" in str(note.message) for note in notes)
+    assert said == (factor < 1)
 
 
 def test_in_space():

@@ -11,8 +11,9 @@ from functools import cached_property
 
 import numpy as np
 
+from ...contact.operators.heat_exchange import InterfaceHeat
 from ...contact.operators.pressure import dense, scaled
-from ...errors import CaseError
+from ...errors import CaseError, ComputationError
 from ...laws.stability import (
     LoadFree,
     PerturbationMatrices,
@@ -23,6 +24,7 @@ from ...laws.stability import (
     static_modes,
 )
 from ..heat.heat_steps import HeatOperators
+from ..interface.equilibrium import ContactState
 from ..system.building import build
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
@@ -33,6 +35,27 @@ _REDUCED = 24
 _SLOW, _NEAR = 0.02, 0.3
 """Start of the onset search as part of a speed that is known roughly, or well."""
 _SAME, _ITERATIONS = 1e-4, 10
+_MOST = 1000
+"""Largest number of pressure functions for which any hot state tells its critical speed."""
+
+
+def static_factor(system: System, contact: ContactState) -> float | None:
+    """First static critical speed factor of a hot state, without wear. Every rank calls.
+
+    None where there is none, or where its matrices would cost more than a fraction of a run.
+    """
+    thermal, heated = system.thermal, contact.conditions.heating.any()
+    if thermal is None or not heated or thermal.varies or thermal.conduction.advection is not None:
+        return None
+    condensed = system.model.method == "condensed" and isinstance(thermal.face, InterfaceHeat)
+    at_hand = condensed and not (system.choice.single and system.contacts.in_space)
+    if not at_hand or system.basis.shape[1] > _MOST or not contact.pressure.any():
+        return None
+    try:
+        factors = PerturbedContact(system, contact.pressure, contact.conditions).static.factors
+    except (ComputationError, np.linalg.LinAlgError):  # a compliance that is no positive operator
+        return None
+    return float(factors[0]) if len(factors) else None
 
 
 class PerturbedContact:

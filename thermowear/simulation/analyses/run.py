@@ -44,12 +44,14 @@ from .checks import (
     too_hot,
 )
 from .positioning import prepare
-from .stability import stability
+from .stability import hot_state, stability
 from .static import initial, steady
 from .transient import TransientHistory
 from .wearing_faces import wearing_faces
 
 _UNPAIRED = 1e-6
+_HOT = ("initial", "steady", "transient")
+"""Analyses whose states have a critical speed."""
 
 
 def run(
@@ -151,6 +153,8 @@ def analyse(
         end, result = history.conclude(history.follow(history.states(last)))
     entries, singular = singular_pressure(end, analysis)
     result = replace(result, summary=merged(result.summary, entries))
+    if analysis.type in _HOT:
+        result = hot_state(end, result, observer)
     found: list[ComputationError | str | None] = [
         singular,
         contact_at_an_end(end.system, end.contact.pressure),

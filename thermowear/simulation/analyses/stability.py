@@ -10,6 +10,7 @@ import numpy as np
 from ...errors import ComputationError
 from ...laws.stability import Rate
 from ...model.analyses import StabilityAnalysis, StaticAnalysis
+from ...model.model import Model
 from ...results import Modes, Result
 from ..hot_spots.analysis import hot_spots
 from ..interface.condensed_method import CondensedMethod
@@ -19,7 +20,7 @@ from ..results.summary import merged
 from ..runtime.observer import Observer
 from ..system.system import System
 from .growth_model import PerturbationMode
-from .perturbation import PerturbedContact
+from .perturbation import PerturbedContact, static_factor
 from .static import steady, unworn
 
 _SHOWN = 4
@@ -102,25 +103,48 @@ def _keys(
 ) -> dict:
     """Summary entries of a stability analysis; critical speeds of several bodies by contact."""
     found: dict[str, Any] = {}
-    speeds: dict[str, dict[str, float | None]] = {}
     for which, onset in (("", critical), ("_with_wear", with_wear)):
-        factor = onset.factor if onset else None
-        found[f"critical_speed_factor{which}"] = factor
         found[f"critical_frequency{which}_rad_per_s"] = onset.rate.value.imag if onset else None
-        for one in system.model.interfaces:
-            own = speeds.setdefault(one.name, {})
-            for name, value in (
-                (f"speed{which}_m_per_s", one.motion.velocity),
-                (f"angular_velocity{which}_rad_per_s", one.motion.angular_velocity),
-            ):
-                known = None if factor is None or value is None else factor * abs(value)
-                own[f"critical_{name}"] = known
-    by_contact: dict[str, Any] = {"contacts": speeds}
-    found |= speeds[""] if system.model.is_pair else by_contact
+        factor = onset.factor if onset else None
+        found = merged(found, critical_speeds(system.model, factor, which))
     for which, mode in (("", fastest), ("_without_wear", unworn)):
         found[f"growth_rate{which}_per_s"] = mode.rate.value.real if mode else None
         found[f"growth_frequency{which}_rad_per_s"] = mode.rate.value.imag if mode else None
     return found
+
+
+def critical_speeds(model: Model, factor: float | None, which: str = "") -> dict[str, Any]:
+    """Summary entries of a critical speed factor; speeds of several bodies by contact."""
+    speeds: dict[str, Any] = {}
+    for one in model.interfaces:
+        given = one.motion.velocity, one.motion.angular_velocity
+        known = [None if factor is None or v is None else factor * abs(v) for v in given]
+        names = f"critical_speed{which}_m_per_s", f"critical_angular_velocity{which}_rad_per_s"
+        speeds[one.name] = dict(zip(names, known, strict=True))
+    by_contact = speeds[""] if model.is_pair else {"contacts": speeds}
+    return {f"critical_speed_factor{which}": factor, **by_contact}
+
+
+def hot_state(end: Snapshot, result: Result, observer: Observer) -> Result:
+    """Result with the critical speed of its last state; notes an unstable one. Every rank calls.
+
+    Of states in steady temperatures.
+    """
+    system, heat = end.system, end.system.model.heat
+    if heat is None or heat.transient or result.stopped is not None:
+        return result
+    with system.phases("stability"):
+        factor = static_factor(system, end.contact)
+    if factor is None:
+        return result
+    if factor < 1.0:
+        observer.note(
+            f"the hot state is unstable without wear, at {1 / factor:.3g} times its critical "
+            "speed: uneven pressures grow, unless wear evens them out (a stability analysis "
+            "tells); hot spots along the sliding were not examined"
+        )
+    extra = critical_speeds(system.model, factor)
+    return replace(result, summary=merged(result.summary, extra))
 
 
 def _table(system: System, modes: list[PerturbationMode]) -> Modes:

@@ -5,10 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermowear.contact.solvers.static_stability import is_stable
+from thermowear.contact.solvers.static_stability import critical_factor
 
 ALL = np.ones(3, dtype=bool)
 PRESSED = np.ones((3, 1))
+
+
+def is_stable(*state):
+    return critical_factor(*state) >= 1.0
 
 
 @pytest.mark.parametrize(("speed", "stable"), [(0.99, True), (1.01, False), (-5.0, True)])
@@ -19,6 +23,12 @@ def test_rods_that_share_a_load(speed, stable):
     """
     c, h = 2e-9 * np.eye(3), -2e-9 * np.eye(3)
     assert is_stable(c, speed * h, PRESSED, ALL) is stable
+
+
+def test_factor():
+    """requirement: the heat that makes the softest difference of loads neutral."""
+    assert critical_factor(np.eye(3), -0.5 * np.eye(3), PRESSED, ALL) == pytest.approx(2.0)
+    assert critical_factor(np.eye(3), 0.5 * np.eye(3), PRESSED, ALL) == np.inf
 
 
 def test_only_the_contact_zone_counts():

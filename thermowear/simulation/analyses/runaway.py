@@ -13,13 +13,19 @@ _UNSTABLE = (
     "(thermoelastic instability); reduce the speed or the friction"
 )
 _JUMPS = (
-    "with steady temperatures, states may jump beyond the critical speed, which a stability "
-    "analysis computes: reduce the speed, or compute temperatures in time (heat.transient = true)"
+    "with steady temperatures, states may jump beyond the critical speed, here at {:.3g} times it: "
+    "reduce the speed, or compute temperatures in time (heat.transient = true)"
 )
+_REGULAR = (
+    "this state is not critical, at {:.3g} times its critical speed: use a finer mesh at the "
+    "contact, or another analysis.tolerance"
+)
+_NEAR = 1.02
+"""Critical speed factor of the last state up to which the next one may be beyond it."""
 
 
 def cause_of(
-    reason: ComputationError, heating: Sequence[HistoryRow], steady_heat: bool
+    reason: ComputationError, heating: Sequence[HistoryRow], critical: float | None
 ) -> str | None:
     """Thermal cause of an error that ends a running-in; None if it is not known to have one.
 
@@ -28,12 +34,14 @@ def cause_of(
     reason : ComputationError
     heating : sequence of HistoryRow
         History with temperatures in time; empty without them.
-    steady_heat : bool
-        True if the temperatures are the steady ones of each moment.
+    critical : float or None
+        Critical speed factor of the last state in steady temperatures; None if not known.
     """
     if len(heating) > 2 and _runs_away(heating):
         return _UNSTABLE
-    return _JUMPS if steady_heat and isinstance(reason, StandstillError) else None
+    if critical is None or not isinstance(reason, StandstillError):
+        return None
+    return (_JUMPS if critical < _NEAR else _REGULAR).format(1 / critical)
 
 
 def _runs_away(rows: Sequence[HistoryRow]) -> bool:

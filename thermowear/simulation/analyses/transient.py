@@ -28,6 +28,7 @@ from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from ..time.alternation import ALTERNATES, STEPS, alternates
 from ..time.time_loop import AnySize, FewSizes, Moment, times_to_hit
+from .perturbation import static_factor
 from .runaway import cause_of
 from .static import wear_velocity
 
@@ -133,12 +134,18 @@ class TransientHistory(AnalysisHistory[Moment]):
                         "of any solid"
                     )
         except ComputationError as reason:
-            problem, rows = self.loop.now.problem, self.table(HistoryRow)
-            steady_heat = problem.heat is not None and not problem.stores_heat
-            cause = cause_of(reason, rows if self.table(HeatRow) else [], steady_heat)
+            rows = self.table(HistoryRow)
+            cause = cause_of(reason, rows if self.table(HeatRow) else [], self._critical())
             if cause is None:
                 raise
             raise ComputationError(f"{reason}; {cause}") from None
+
+    def _critical(self) -> float | None:
+        """Critical speed factor of the last state in steady temperatures; None if not known."""
+        problem, last = self.loop.now.problem, self._last
+        if problem.heat is None or problem.stores_heat or last is None:
+            return None
+        return static_factor(problem.system, problem.contact_state(last.state, last.time))
 
     def snapshot(self, state: Moment) -> Snapshot:
         return snapshot_at(self.loop.now.problem, state.state, state.time)

@@ -14,7 +14,7 @@ from ...contact.solvers.signorini import (
     SignoriniSolution,
     solve_contact,
 )
-from ...contact.solvers.static_stability import is_stable
+from ...contact.solvers.static_stability import critical_factor
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
 from ...errors import ComputationError
@@ -27,10 +27,13 @@ _FIRST_PART, _LEAST_PART = 1 / 8, 1 / 256
 """First and smallest step of the thermal distortion in a continuation."""
 _KEPT = 8
 """Number of compliances and factors kept: of the stages of a step and its halves."""
-_HOT = (
-    "with friction heat this happens beyond the critical sliding speed (thermoelastic "
-    "instability), or where the elements are too large for a contact zone that heat makes small: "
-    "reduce the speed, the expansion or the friction, or refine the mesh at the contact"
+_CRITICAL = (
+    "the speed is beyond the critical sliding speed of this contact{} (thermoelastic instability): "
+    "reduce the speed, the expansion or the friction"
+)
+_SMALL = (
+    "the speed is not beyond a critical sliding speed of this contact zone; its elements may be "
+    "too large where heat makes it smaller: refine the mesh at the contact"
 )
 _LOCKED = (
     "friction along the faces locks body 1 or tips it over an edge: lower contact.friction, "
@@ -40,6 +43,10 @@ _TIPPED = (
     "the load lifts body 1 off or tips it over an edge: change the line of the load or the free "
     "motions of the holder"
 )
+
+
+class _Unstable(NoEquilibrium):
+    """Error: small perturbations would leave an equilibrium."""
 
 
 class RecentSums:
@@ -86,10 +93,30 @@ class CondensedMethod:
         try:
             return self._balanced(gap, slope, guess, conditions, heat, pointwise)
         except NoEquilibrium as error:
-            cold = _LOCKED if conditions.friction.any() else _TIPPED
-            text = f"{error}; {cold if heat is None else _HOT}"
+            cause = _LOCKED if conditions.friction.any() else _TIPPED
+            if heat is not None:
+                beyond = isinstance(error, _Unstable)
+                cause = _CRITICAL.format("") if beyond else self._hot_cause(gap, conditions, heat)
             parted = parted_by_fluid(self._system, conditions.load)
-            raise parted or ComputationError(text) from None
+            raise parted or ComputationError(f"{error}; {cause}") from None
+
+    def _hot_cause(self, gap, conditions, heat) -> str:
+        """Cause of a contact without equilibrium, by the stability of its zone without heat."""
+        bodies, compliance = self._contact, self._contact.compliance
+        thermal, opening = heat.coupling(conditions, bodies.basis)
+        weak = bodies.weighted.T @ (gap + self._dead) + opening
+        try:
+            cold = solve_contact(
+                compliance,
+                weak,
+                bodies.modes,
+                conditions.load,
+                force_modes=bodies.force_modes,
+            )
+            factor = critical_factor(compliance, thermal, bodies.modes, cold.active)
+        except (NoEquilibrium, np.linalg.LinAlgError):
+            return _SMALL
+        return _CRITICAL.format(f", {1 / factor:.3g} times it") if factor < 1.0 else _SMALL
 
     def _balanced(
         self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise
@@ -135,8 +162,9 @@ class CondensedMethod:
                     raise
             else:
                 part = grown
-        if not is_stable(compliance, thermal, self._contact.modes, guess.warm_start.active):
-            raise NoEquilibrium(
+        active = guess.warm_start.active
+        if critical_factor(compliance, thermal, self._contact.modes, active) < 1.0:
+            raise _Unstable(
                 "contact: no equilibrium found that small perturbations leave as it is"
             )
         return guess

@@ -139,6 +139,9 @@ def varying(case: AnyCase) -> Iterator[Fault]:
             yield path, "depends on depth, which grows without end: there is no steady state"
 
 
+NOT_UNDER = "is not supported with {}, where a steady state may be periodic; give end_time only"
+
+
 def histories(case: Case) -> Iterator[Fault]:
     """Time histories that have an effect, and end the analysis in time."""
     analysis, history = case.analysis, case.load.history
@@ -149,7 +152,7 @@ def histories(case: Case) -> Iterator[Fault]:
             yield from _force_history(case, history)
         if analysis.until is not None and case.histories:
             which = next(iter(case.histories))
-            yield "analysis.until", f"there is no steady state under {which}; give end_time only"
+            yield "analysis.until", NOT_UNDER.format(which)
     elif isinstance(analysis, Fretting) and history is not None:
         if history.repeat:
             yield (

@@ -9,6 +9,7 @@ from ...laws.time_course import TANGENTIAL
 from ..assembly.schema import AssemblyCase
 from ..assembly.tables import AssemblyHolderTable
 from ..values.section import Fault
+from .analyses import NOT_UNDER
 
 _NOT_FORCE = ("approach", *chain.from_iterable(TANGENTIAL), "moment", "cycle_start")
 _UNVARIED = ("moments", "tangential_force", "closing_moment")
@@ -23,7 +24,7 @@ def histories(case: AssemblyCase) -> Iterator[Fault]:
         yield path, f"requires a transient analysis, not {analysis.type}"
     if getattr(analysis, "until", None) is not None and case.histories:
         which = next(iter(case.histories))
-        yield "analysis.until", f"there is no steady state under {which}; give end_time only"
+        yield "analysis.until", NOT_UNDER.format(which)
     for name, holder in case.holders.items():
         yield from _of_holder(f"holders.{name}", holder)
     for path, contact in case.contact_tables.items():

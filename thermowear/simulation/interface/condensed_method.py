@@ -164,9 +164,7 @@ class CondensedMethod:
                 part = grown
         active = guess.warm_start.active
         if critical_factor(compliance, thermal, self._contact.modes, active) < 1.0:
-            raise _Unstable(
-                "contact: no equilibrium found that small perturbations leave as it is"
-            )
+            raise _Unstable("contact: no equilibrium found that small perturbations leave as it is")
         return guess
 
     def point_compliance(self, points) -> np.ndarray:

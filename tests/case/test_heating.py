@@ -184,7 +184,7 @@ AT_REST = [
         "no surface has heat.cooling"),
     Bad("until steady in other surroundings",
         HOT | {SURROUNDED: RAMP, "analysis": {"type": "transient", "until": "steady"}},
-        "analysis.until", f"is not supported with {SURROUNDED}"),
+        "analysis.until", f"is not supported under {SURROUNDED}"),
 ]  # fmt: skip
 
 

@@ -3,6 +3,8 @@
 import tomli_w
 
 import thermowear as tw
+from thermowear.errors import StandstillError
+from thermowear.simulation.analyses.runaway import cause_of
 
 from ..case.starter import STEADY, tables
 from ..geometry.plain import NAMES, blocks, msh
@@ -39,3 +41,13 @@ def test_beyond_the_critical_speed(tmp_path):
         reason = str(result(tmp_path, times * critical, **running_in).stopped)
         assert "states may jump beyond the critical speed" in reason
         assert "heat.transient = true" in reason
+
+
+def test_a_regular_state_is_not_called_critical():
+    """requirement: the critical speed is the cause only beyond it, by the stability of the state."""
+    still = StandstillError("transient: no step is small enough at 9 s")
+    assert "at 1.25 times it" in (cause_of(still, [], 0.8) or "")
+    regular = cause_of(still, [], 4.0) or ""
+    assert "beyond" not in regular
+    assert "at 0.25 times its critical speed" in regular
+    assert cause_of(still, [], None) is None

@@ -44,7 +44,7 @@ CONVERGING = {
         "motions.seat.angular_velocity": "9000 rpm",
     },
 }
-"""Five starters above their critical speeds."""
+"""Five starters, below and above their critical speeds."""
 COARSE = {"mesh": {"degree": 4, "elements": 6, "grading": 0.3}}
 
 

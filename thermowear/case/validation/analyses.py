@@ -139,7 +139,7 @@ def varying(case: AnyCase) -> Iterator[Fault]:
             yield path, "depends on depth, which grows without end: there is no steady state"
 
 
-NOT_UNDER = "is not supported with {}, where a steady state may be periodic; give end_time only"
+NOT_UNDER = "is not supported under {}, where a steady state may be periodic; give end_time only"
 
 
 def histories(case: Case) -> Iterator[Fault]:

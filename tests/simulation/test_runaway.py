@@ -44,7 +44,7 @@ def test_beyond_the_critical_speed(tmp_path):
 
 
 def test_a_regular_state_is_not_called_critical():
-    """requirement: the critical speed is the cause only beyond it, by the stability of the state."""
+    """requirement: the critical speed is the cause only beyond it, by that state's stability."""
     still = StandstillError("transient: no step is small enough at 9 s")
     assert "at 1.25 times it" in (cause_of(still, [], 0.8) or "")
     regular = cause_of(still, [], 4.0) or ""

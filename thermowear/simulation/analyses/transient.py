@@ -145,7 +145,12 @@ class TransientHistory(AnalysisHistory[Moment]):
         problem, last = self.loop.now.problem, self._last
         if problem.heat is None or problem.stores_heat or last is None:
             return None
-        return static_factor(problem.system, problem.contact_state(last.state, last.time))
+        if len(last.state.pressure) != len(problem.system.weights):  # of the mesh before
+            return None
+        try:
+            return static_factor(problem.system, problem.contact_state(last.state, last.time))
+        except ComputationError:
+            return None
 
     def snapshot(self, state: Moment) -> Snapshot:
         return snapshot_at(self.loop.now.problem, state.state, state.time)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
@@ -10,7 +11,7 @@ from typing import Any
 
 from .. import load
 from ..case import Case, as_plain
-from ..errors import CaseError, ComputationError, UnwritableError
+from ..errors import CaseError, ComputationError, RunNote, UnwritableError
 from ..output.checkpoint import CHECKPOINT
 from ..output.console import print_discretisations, print_summary
 from ..output.files import writing
@@ -259,7 +260,9 @@ def side_by_side(path: Path, overrides: tuple[str, ...], comm) -> dict[str, dict
     for name, changes in neighbours(load(path, overrides)).items():
         entry: dict[str, Any] = {"changes": ", ".join(changes)}
         try:
-            result = run(load(path, (*overrides, *changes)), comm)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", RunNote)  # those of the run itself are shown
+                result = run(load(path, (*overrides, *changes)), comm)
             if result.stopped is not None:
                 raise result.stopped
             entry |= {key: result.summary.get(key) for key in COMPARED}

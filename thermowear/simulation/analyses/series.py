@@ -46,11 +46,18 @@ class Series:
         ------
         CaseError, ComputationError
         """
-        observer = observer or Observer()
+        observer = observer or _Quiet()
         single = needs_single_solution(model, analysis)
         phases = phases or Phases(observer.phase)
         system = prepare(model, self.comm, phases, self._parts, single)
         return balanced(analyse(system, analysis, observer)[1])
+
+
+class _Quiet(Observer):
+    """Observer of one run among many, whose notes are not shown."""
+
+    def note(self, text: str) -> None:
+        pass
 
 
 def groups(models: Iterable[Model]) -> list[list[int]]:

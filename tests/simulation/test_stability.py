@@ -122,7 +122,7 @@ def test_growth_converges_to_that_of_perfect_contact(case):
                 limit = rate_and_critical(case, changes | {"heat.conductance": "1e10 W/(m^2 K)"})
                 np.testing.assert_allclose(found[-1], limit, rtol=1e-3)
         for (degree, *_), values in zip(MESHES, found, strict=True):
-            np.testing.assert_allclose(values, found[-1], rtol=0.06 if degree == 1 else 0.02)
+            np.testing.assert_allclose(values, found[-1], rtol=0.08 if degree == 1 else 0.02)
 
 
 def test_rates_need_capacities():

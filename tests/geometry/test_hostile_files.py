@@ -91,7 +91,7 @@ TEXTS = {
         "which is not a file in the same folder",
     ),
     "nodes_of_a_file.inp": (DECK + "*ELEMENT, TYPE=CPS4, FILE={secret}\n", "includes another file"),
-    "on_the_next_line.inp": (DECK + "*NODE,\n INPUT={secret}\n", "where a number is expected"),
+    "on_the_next_line.inp": (DECK + "*NODE,\n INPUT={secret}\n", "includes another file"),
     "old_lines.msh": (GOOD.replace("\n", "\r") + CALL, SECTION),
     "nothing_first.msh": (GOOD.replace("$Nodes", "\0$Nodes"), SECTION),
     "unsaid.msh": (

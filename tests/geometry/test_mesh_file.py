@@ -19,6 +19,7 @@ from thermowear.geometry.reading.export import write_mesh
 from ..case.starter import STEADY, tables
 from ..conftest import NAMES, two_blocks
 from .measure import areas, edges, scaled_jacobians, unnamed
+from .plain import NUMBERED, blocks, meshio_file
 
 
 def file_geometry(path, **keys):
@@ -620,3 +621,47 @@ def test_keys_without_effect_on_a_mesh_file(tmp_path):
     ]
     case["mesh"] = {"elements": 12, "grading": 0.3, "degree": 3}
     assert tw.load(case).mesh.degree == 3
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("PhysicalNames\n5", "PhysicalNames\n6", "announces 6 names and has 5"),
+        ('2 2 "PLATE"', '2 1 "PLATE"', "the group 1 of dimension 2 has two names"),
+        ("{edge}", "1 99 1 ", "elements lie on the entity (1, 99), which $Entities does not list"),
+    ],
+)
+def test_groups_of_gmsh_that_are_lost(tmp_path, old, new, expected):
+    """
+    requirement: names and entities that the file does not have are errors, not smaller surfaces.
+    """
+    path = gmsh_blocks(tmp_path / "a.msh")
+    text = path.read_text()
+    elements = text.index("$Elements")
+    edge = next(line for line in text[elements:].splitlines() if line.startswith("1 "))
+    old, at = (edge, elements) if old == "{edge}" else (old, 0)
+    new = new + edge.rpartition(" ")[2] if at else new
+    assert old in text[at:]
+    path.write_text(text[:at] + text[at:].replace(old, new, 1))
+    assert expected in fault(path, **GMSH_NAMES)
+
+
+@pytest.mark.parametrize("ending", ["vtu", "xdmf"])
+def test_several_integer_data(tmp_path, ending):
+    """
+    requirement: a number is the cells with this value of one of the data of the file; where two
+    data differ on it, it is taken with the name of its data only.
+    """
+    import meshio
+
+    meshio_file(blocks(), tmp_path / f"a.{ending}")
+    mesh = meshio.read(tmp_path / f"a.{ending}")
+    mesh.cell_data["Ids"] = [3 + np.arange(len(block)) for block in mesh.cells]
+    mesh.write(tmp_path / f"b.{ending}")
+    surfaces = {name: f"tag={tag}" for name, tag in NUMBERED["surfaces"].items()}
+    expected = read(tmp_path / f"a.{ending}", **NUMBERED)
+    found = read(tmp_path / f"b.{ending}", **NUMBERED | {"surfaces": surfaces})
+    np.testing.assert_array_equal(found.facets, expected.facets)
+    text = fault(tmp_path / f"b.{ending}", **NUMBERED)
+    assert "no surface named '3'" in text
+    assert "tag=3, tag=4" in text

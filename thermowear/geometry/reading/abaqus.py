@@ -1,7 +1,8 @@
 """Reader of nodes, elements and their sets from an Abaqus input file.
 
-Supported are ``*NODE``, ``*ELEMENT``, ``*NSET``, ``*ELSET`` and ``*SURFACE``. Parts and
-assemblies are read as if they were one. Cards that generate or move nodes and elements, or
+Supported are ``*NODE``, ``*ELEMENT``, ``*NSET``, ``*ELSET`` and ``*SURFACE``. Labels are not
+case-sensitive unless they are quoted, and must be defined. Parts and assemblies are read as if they
+were one. Cards that generate or move nodes and elements, or
 include other files, are rejected; all others (materials, steps) are skipped.
 """
 
@@ -10,15 +11,17 @@ from __future__ import annotations
 import re
 from collections import defaultdict
 from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 
+from ..mesh.nodes import numbered
 from .contents import VTK_ORDER, CellBlock, MeshContents, numbering, parsed
 
 _PLANE = re.compile(r"(CPS|CPE|CPEG|CAX|M3D|STRI|S|DC2D|DCAX|WARP2D|R3D)(3|4|6|8|9)(?!\d)")
 _SOLID = re.compile(r"(C3D|DC3D|DCC3D)(4|8|10|20|27)(?!\d)")
 _LINE = re.compile(r"(T2D|T3D|B2|B3|SAX|R2D|RAX|DC1D|W2D|W3D)\d*")
-_SIDE = re.compile(r"S([1-6]|POS|NEG)", re.IGNORECASE)
+_SIDE = re.compile(r"(S([1-6]|POS|NEG))?", re.IGNORECASE)
 _CELLS = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8", 9: "quad9"}
 _SOLIDS = {4: "tetra", 10: "tetra10", 8: "hexahedron", 20: "hexahedron20", 27: "hexahedron27"}
 _ORDERS = VTK_ORDER | {
@@ -35,7 +38,7 @@ _SIDES = {
 """Corners of the sides S1, S2, … of elements."""
 _SHELL_FACES = {"triangle": np.array([(0, 1, 2)]), "quad": np.array([(0, 1, 2, 3)])}
 """Corners of the sides SPOS and SNEG of shells and membranes, which cover cells in space."""
-_NO_SIDES = np.empty((0, 2), dtype=np.int64)
+_NO_SIDES = np.empty((0, 0), dtype=np.int64)
 _FACETS = {2: "line", 3: "triangle", 4: "quad"}
 _LINES = {2: "line", 3: "line3"}
 _REFUSED = {
@@ -50,9 +53,36 @@ _REFUSED = {
 """Unsupported cards that would change the mesh."""
 _MOST_SETS = 10_000
 _READ = ("NODE", "ELEMENT", "NSET", "ELSET", "SURFACE")
+_COMMAS = re.compile(r',(?=(?:[^"]*"[^"]*")*[^"]*$)')
+"""Commas outside of quoted labels."""
+_FLAGS = ("GENERATE", "INTERNAL", "UNSORTED")
+"""Options without a value."""
+_FREE = -1
+"""Side that stands for all sides of an element without a neighbour."""
 
-Member = int | str | tuple[int, int, int] | np.ndarray
-"""Member of a set: a number, the name of another set, a range (first, last, step), or numbers."""
+
+class Member(NamedTuple):
+    """Members of a set, and their line in the file.
+
+    `value` is the name of another set, a range (first, last, step), or an array of numbers.
+    """
+
+    value: str | tuple[int, int, int] | np.ndarray
+    line: int
+
+
+class Card(NamedTuple):
+    """Keyword with its options and line, and its data lines with theirs."""
+
+    keyword: str
+    line: int
+    options: dict[str, str]
+    lines: list[str]
+    numbers: list[int]
+
+    def rows(self) -> Iterator[tuple[list[str], int]]:
+        """Words and line number of each data line."""
+        return ((_words(line), n) for line, n in zip(self.lines, self.numbers, strict=True))
 
 
 def read_abaqus(text: str, dim: int = 2) -> MeshContents:
@@ -61,62 +91,72 @@ def read_abaqus(text: str, dim: int = 2) -> MeshContents:
     Raises
     ------
     ValueError
-        If it is malformed, or has cards that would change the mesh.
+        If it is malformed, has cards that would change the mesh, or names what it does not define.
     """
     deck = _Deck(dim)
-    for keyword, options, lines in _cards(text):
+    for card in _cards(text):
+        keyword = card.keyword
         if keyword in _REFUSED:
             raise ValueError(f"*{keyword} {_REFUSED[keyword]}")
-        if keyword == "INSTANCE" and lines:
-            raise ValueError("*INSTANCE moves a part; write the nodes in global coordinates")
+        if keyword == "INSTANCE":
+            if card.lines:
+                raise ValueError("*INSTANCE moves a part; write the nodes in global coordinates")
+            deck.instances.add(_key(card.options.get("NAME", "")))
         if keyword in _READ:
-            if options.keys() & {"INPUT", "FILE"}:
+            if card.options.keys() & {"INPUT", "FILE"}:
                 raise ValueError(f"*{keyword} includes another file; a mesh must be in one file")
-            getattr(deck, f"read_{keyword.lower()}")(options, lines)
+            getattr(deck, f"read_{keyword.lower()}")(card)
     return deck.result()
 
 
-def _cards(text: str) -> Iterator[tuple[str, dict[str, str], list[str]]]:
-    """Keyword, options and data lines of each card."""
-    keyword, lines = "", []
-    options: dict[str, str] = {}
-    for line in text.splitlines():
+def _cards(text: str) -> Iterator[Card]:
+    """All cards; options that end with a comma continue on the next line."""
+    card, continued = Card("", 0, {}, [], []), False
+    for number, line in enumerate(text.splitlines(), start=1):
         if line.startswith("**") or not line.strip():
             continue
-        if not line.startswith("*"):
-            lines.append(line.strip().rstrip(","))
+        words = _words(line.rstrip().rstrip(","))
+        if line.startswith("*"):
+            yield card
+            card = Card(words.pop(0)[1:].strip().upper(), number, {}, [], [])
+        elif not (continued and ("=" in line or words[0].upper() in _FLAGS)):
+            card.lines.append(line.strip().rstrip(","))
+            card.numbers.append(number)
+            continued = False
             continue
-        yield keyword, options, lines
-        first, *rest = line[1:].split(",")
-        pairs = [part.partition("=") for part in rest]
-        options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
-        keyword, lines = first.strip().upper(), []
-    yield keyword, options, lines
+        pairs = [word.partition("=") for word in words]
+        card.options.update({key.strip().upper(): value.strip() for key, _, value in pairs})
+        continued = line.rstrip().endswith(",")
+    yield card
 
 
 class _Deck:
-    """Parser state; numbers are those of the file."""
+    """Parser state; numbers are those of the file, labels are spelled as at their first place."""
 
     def __init__(self, dim: int) -> None:
         self.dim = dim
+        self.labels: dict[str, str] = {}
+        self.instances: set[str] = set()
         self.tags: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
         self.points: list[np.ndarray] = [np.empty((0, 3))]
         self.elements: defaultdict[str, list[tuple[np.ndarray, np.ndarray]]] = defaultdict(list)
         self.node_sets: defaultdict[str, list[Member]] = defaultdict(list)
+        self.nodes_of: list[tuple[str, Member]] = []
         self.element_sets: defaultdict[str, list[Member]] = defaultdict(list)
-        self.surfaces: dict[str, list[tuple[int | str, int]]] = {}
+        self.surfaces: dict[str, list[tuple[Member, int]]] = {}
 
-    def read_node(self, options, lines) -> None:
-        if options.get("SYSTEM", "R").upper() != "R":
+    def read_node(self, card: Card) -> None:
+        if card.options.get("SYSTEM", "R").upper() != "R":
             raise ValueError("*NODE, SYSTEM= is not Cartesian; write x, y and z")
-        table = _table(lines)[:, :4]
+        table = _table(card.lines)[:, :4]
         self.tags.append(_whole(table[:, 0]))
         self.points.append(np.pad(table[:, 1:], ((0, 0), (0, 4 - table.shape[1]))))
-        if "NSET" in options:
-            self.node_sets[options["NSET"]].append(self.tags[-1])
+        if "NSET" in card.options:
+            self.node_sets[self._name(card, "NSET")].append(Member(self.tags[-1], card.line))
 
-    def read_element(self, options, lines) -> None:
-        kind, words = options.get("TYPE", "").upper(), len(lines[0].split(",")) if lines else 0
+    def read_element(self, card: Card) -> None:
+        kind, lines = card.options.get("TYPE", "").upper(), card.lines
+        words = len(lines[0].split(",")) if lines else 0
         if plane := _PLANE.match(kind):
             count, names = int(plane[2]), _CELLS
         elif self.dim == 3 and (solid := _SOLID.match(kind)):
@@ -131,22 +171,56 @@ class _Deck:
         table = flat.reshape(-1, count + 1)
         order = 1 + np.array(_ORDERS.get(names[count], range(count)))
         self.elements[names[count]].append((table[:, 0], table[:, order]))
-        if "ELSET" in options:
-            self.element_sets[options["ELSET"]].append(table[:, 0])
+        if "ELSET" in card.options:
+            self.element_sets[self._name(card, "ELSET")].append(Member(table[:, 0], card.line))
 
-    def read_nset(self, options, lines) -> None:
-        self.node_sets[options.get("NSET", "")] += _members(options, lines)
+    def read_nset(self, card: Card) -> None:
+        name = self._name(card, "NSET")
+        self.node_sets[name] += self._members(card)
+        if "ELSET" in card.options:
+            self.nodes_of.append((name, Member(self._name(card, "ELSET"), card.line)))
 
-    def read_elset(self, options, lines) -> None:
-        self.element_sets[options.get("ELSET", "")] += _members(options, lines)
+    def read_elset(self, card: Card) -> None:
+        self.element_sets[self._name(card, "ELSET")] += self._members(card)
 
-    def read_surface(self, options, lines) -> None:
-        name, kind = options.get("NAME", ""), options.get("TYPE", "ELEMENT").upper()
-        rows = [_words(line) for line in lines]
+    def read_surface(self, card: Card) -> None:
+        name, kind = self._name(card, "NAME"), card.options.get("TYPE", "ELEMENT").upper()
+        rows = [(self._member(words[0], n), [*words, ""][1], n) for words, n in card.rows()]
+        if "COMBINE" in card.options:
+            return
         if kind == "NODE":
-            self.node_sets[name] += [_member(row[0]) for row in rows if row[0]]
-        elif kind == "ELEMENT" and all(len(row) > 1 and _SIDE.fullmatch(row[1]) for row in rows):
-            self.surfaces[name] = [(_member(row[0]), _side(row[1])) for row in rows]
+            self.node_sets[name] += [of for of, _, _ in rows]
+        elif kind == "ELEMENT" and all(_SIDE.fullmatch(side) for _, side, _ in rows):
+            if name in self.surfaces:
+                raise ValueError(f"line {card.line}: the surface {name!r} is defined twice")
+            self.surfaces[name] = [(of, _side(side)) for of, side, _ in rows]
+
+    def _name(self, card: Card, option: str) -> str:
+        """Label that an option gives."""
+        if not card.options.get(option):
+            raise ValueError(f"line {card.line}: *{card.keyword} has no {option}=")
+        return self._spelled(card.options[option])
+
+    def _spelled(self, label: str) -> str:
+        return self.labels.setdefault(_key(label), label.strip('"'))
+
+    def _member(self, word: str, line: int) -> Member:
+        """Number or name, in an assembly after the name of an instance and a point."""
+        instance, point, inside = word.partition(".")
+        own = inside if point and _key(instance) in self.instances else word
+        return Member(np.array([int(own)]) if own.isdecimal() else self._spelled(own), line)
+
+    def _members(self, card: Card) -> Iterator[Member]:
+        """Members of a card: numbers, ranges, or names of other sets."""
+        for row, line in card.rows():
+            words = [word for word in row if word]
+            if "GENERATE" in card.options:
+                first, last, *step = (int(word) for word in words)
+                yield Member((first, last, step[0] if step else 1), line)
+            elif all(word.isdecimal() for word in words):
+                yield Member(np.array([int(word) for word in words], dtype=np.int64), line)
+            else:
+                yield from (self._member(word, line) for word in words)
 
     def result(self) -> MeshContents:
         if max(len(self.node_sets), len(self.element_sets), len(self.surfaces)) > _MOST_SETS:
@@ -163,21 +237,37 @@ class _Deck:
             raise ValueError(
                 f"element {number} is defined twice; numbers must also differ between parts"
             )
-        sets = {name: _resolved(name, self.element_sets, elements) for name in self.element_sets}
+
+        def elements_in(members: list[Member], where: str) -> np.ndarray:
+            return _resolved(members, self.element_sets, numbers, "element", where)
+
+        sets = {n: elements_in(of, f"the set {n!r}") for n, of in self.element_sets.items()}
         blocks = []
-        for kind, (numbers, nodes) in merged.items():
-            own = {n: np.flatnonzero(np.isin(numbers, found)) for n, found in sets.items()}
+        for kind, (of_kind, nodes) in merged.items():
+            own = {n: np.flatnonzero(np.isin(of_kind, found)) for n, found in sets.items()}
             blocks.append(
                 CellBlock(kind, positions(nodes), {n: at for n, at in own.items() if len(at)})
             )
         for name, sides in self.surfaces.items():
-            for parts in _facets(merged, sides, sets).values():
-                nodes = positions(np.concatenate(parts))
-                kind = _FACETS[nodes.shape[1]]
-                blocks.append(CellBlock(kind, nodes, {name: np.arange(len(nodes))}))
-        resolved = {name: _resolved(name, self.node_sets, tags) for name in self.node_sets}
-        node_sets = {name: np.sort(positions(found)) for name, found in resolved.items()}
-        return MeshContents(points, blocks, node_sets)
+            for side in sorted({side for _, side in sides}):
+                of_side = [member for member, at in sides if at == side]
+                chosen = elements_in(of_side, f"the surface {name!r}")
+                for kind, nodes in _facets(merged, chosen, side, self.dim):
+                    if not len(nodes):
+                        raise ValueError(
+                            f"line {of_side[0].line}: the surface {name!r} has elements without "
+                            f"{'a free side' if side == _FREE else f'the side {side}'}"
+                        )
+                    blocks.append(CellBlock(kind, positions(nodes), {name: np.arange(len(nodes))}))
+        for name, of in self.nodes_of:
+            chosen = elements_in([of], f"the set {name!r}")
+            every = [nodes[np.isin(own, chosen)].ravel() for own, nodes in merged.values()]
+            self.node_sets[name].append(Member(np.unique(np.concatenate(every)), of.line))
+        known, node_sets = np.sort(tags), {}
+        for name, of_set in self.node_sets.items():
+            found = _resolved(of_set, self.node_sets, known, "node", f"the set {name!r}")
+            node_sets[name] = np.sort(positions(found))
+        return MeshContents(points, blocks, node_sets, any_case=True)
 
     def _nodes(self) -> tuple[np.ndarray, np.ndarray]:
         """Numbers and coordinates; duplicate nodes must have equal coordinates."""
@@ -196,28 +286,48 @@ class _Deck:
 
 
 def _facets(
-    elements: dict[str, tuple[np.ndarray, ...]], sides: list[tuple[int | str, int]], sets: dict
-) -> dict[int, list[np.ndarray]]:
-    """Corners (n, n_corners) of sides of elements, or of the elements of sets, by n_corners.
+    elements: dict[str, tuple[np.ndarray, ...]], chosen: np.ndarray, side: int, dim: int
+) -> Iterator[tuple[str, np.ndarray]]:
+    """Type and nodes, at the corners, of a side of elements; no nodes if they have no such side.
 
-    Side 0 is the element itself, a facet of a cell in space.
+    Side 0 is the element itself, which covers a body.
     """
-    members: dict[int, list[np.ndarray]] = {}
-    for of, side in sides:
-        found = np.array([of]) if isinstance(of, int) else sets.get(of, np.empty(0, int))
-        members.setdefault(side, []).append(found)
-    result: dict[int, list[np.ndarray]] = {}
-    for side, parts in members.items():
-        for kind, (numbers, nodes) in elements.items():
-            every = (_SIDES if side else _SHELL_FACES).get(kind.rstrip("0123456789"), _NO_SIDES)
-            chosen = np.isin(numbers, np.concatenate(parts))
-            for corners in every[max(side - 1, 0) :][:1] if chosen.any() else ():
-                result.setdefault(len(corners), []).append(nodes[chosen][:, corners])
-    return result
+    for kind, (numbers, nodes) in elements.items():
+        cells, shape = nodes[np.isin(numbers, chosen)], kind.rstrip("0123456789")
+        if not len(cells):
+            continue
+        covers = shape == "line" or (dim == 3 and shape in _SHELL_FACES)
+        if covers:
+            corners = _SHELL_FACES.get(shape, np.arange(cells.shape[1])[None])
+            yield (kind if shape == "line" else shape), cells[: 0 if side > 0 else None, corners[0]]
+        else:
+            corners = _SIDES[shape]
+            corners = corners if side == _FREE else corners[max(side - 1, 0) : side]
+            facets = cells[:, corners].reshape(-1, corners.shape[1])
+            yield _FACETS[corners.shape[1]], _free(elements, facets) if side == _FREE else facets
+
+
+def _free(elements: dict[str, tuple[np.ndarray, ...]], facets: np.ndarray) -> np.ndarray:
+    """Facets (n, n_corners) of one element only."""
+    count = facets.shape[1]
+    every = [
+        nodes[:, corners].reshape(-1, count)
+        for kind, (_, nodes) in elements.items()
+        if (corners := _SIDES.get(kind.rstrip("0123456789"), _NO_SIDES)).shape[1] == count
+    ]
+    number, _ = numbered(np.concatenate([facets, *every]))
+    times = np.bincount(number[len(facets) :])
+    return facets[times[number[: len(facets)]] == 1]
+
+
+def _key(label: str) -> str:
+    """Label for comparisons: the case of letters counts only in quotation marks."""
+    return label.strip('"') if label.startswith('"') else label.upper()
 
 
 def _words(line: str) -> list[str]:
-    return [part.strip() for part in line.split(",")]
+    parts = _COMMAS.split(line) if '"' in line else line.split(",")
+    return [part.strip() for part in parts]
 
 
 def _table(lines: list[str]) -> np.ndarray:
@@ -237,43 +347,61 @@ def _whole(values: np.ndarray) -> np.ndarray:
 
 
 def _side(label: str) -> int:
-    return int(label[1:]) if label[1:].isdigit() else 0
+    if not label:
+        return _FREE
+    return int(label[1:]) if label[1:].isdecimal() else 0
 
 
-def _member(word: str) -> int | str:
-    return int(word) if word.isdigit() else word
+def _resolved(
+    members: list[Member],
+    sets: dict[str, list[Member]],
+    known: np.ndarray,
+    kind: str,
+    where: str,
+) -> np.ndarray:
+    """Numbers that members of a set or surface stand for, sorted.
 
+    Numbers of a range that are not in the mesh are left out; the cost of a range is that of the
+    numbers in the mesh, regardless of its length.
 
-def _members(options, lines) -> Iterator[Member]:
-    """Members of a card: numbers, ranges, or names of other sets."""
-    for line in lines:
-        words = [word for word in _words(line) if word]
-        if "GENERATE" in options:
-            first, last, *step = (int(word) for word in words)
-            yield first, last, step[0] if step else 1
-        else:
-            yield from map(_member, words)
+    Parameters
+    ----------
+    members : list of Member
+    sets : dict of str to list of Member
+        All sets.
+    known : ndarray
+        Sorted numbers in the mesh.
+    kind, where : str
+        ``"node"`` or ``"element"``, and whose members they are, for messages.
 
-
-def _resolved(name: str, sets: dict[str, list[Member]], known: np.ndarray) -> np.ndarray:
-    """Numbers of a set that exist in the mesh; others in a range are left out.
-
-    The cost of a range is that of the numbers in the mesh, regardless of its length.
+    Raises
+    ------
+    ValueError
+        If a number or a set is not defined.
     """
     found: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
-    waiting, seen = [name], {name}
+    lines: list[np.ndarray] = [np.empty(0, dtype=np.int64)]
+    waiting, seen = list(members), set[str]()
     while waiting:
-        members = sets.get(waiting.pop(), [])
-        found.append(np.array([m for m in members if isinstance(m, int)], dtype=np.int64))
-        found += [m for m in members if isinstance(m, np.ndarray)]
-        for member in members:
-            if isinstance(member, str) and member not in seen:
-                seen.add(member)
-                waiting.append(member)
-            elif isinstance(member, tuple):
-                first, last, step = member
-                if step < 1:
-                    raise ValueError(f"the set {name} has a range with the step {step}")
-                inside = (known >= first) & (known <= last) & ((known - first) % step == 0)
-                found.append(known[inside])
-    return np.unique(np.concatenate(found))
+        value, line = waiting.pop()
+        if isinstance(value, str):
+            if value not in sets:
+                raise ValueError(f"line {line}: the {kind} set {value!r} of {where} is not defined")
+            waiting += [] if value in seen else sets[value]
+            seen.add(value)
+            continue
+        if isinstance(value, tuple):
+            first, last, step = value
+            if step < 1:
+                raise ValueError(f"line {line}: {where} has a range with the step {step}")
+            value = known[(known >= first) & (known <= last) & ((known - first) % step == 0)]
+            if not len(value):
+                raise ValueError(f"line {line}: {where} has a range without defined {kind}s")
+        found.append(value)
+        lines.append(np.full(len(value), line))
+    numbers = np.concatenate(found)
+    missing = ~np.isin(numbers, known)
+    if missing.any():
+        line, number = min(zip(np.concatenate(lines)[missing], numbers[missing], strict=True))
+        raise ValueError(f"line {line}: {kind} {number} of {where} is not defined")
+    return np.unique(numbers)

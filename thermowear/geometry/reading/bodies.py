@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -57,7 +57,7 @@ def has_surface(name: str, path: str | None, paths: Mapping[str, str], dim: int)
         contents = _contents(path, paths, dim)
     except CaseError:
         return False
-    return name in (*contents.names(dim - 1), *contents.node_sets)
+    return contents.spelled(name) in (*contents.names(dim - 1), *contents.node_sets)
 
 
 def bodies_in(
@@ -67,6 +67,10 @@ def bodies_in(
     with_material: Mapping[str, Mapping[str, str]],
 ) -> AnyMesh:
     """Mesh of bodies from contents in metres, see `read_bodies`."""
+
+    def in_file(parts: Iterable[Named]) -> list[Named]:
+        return [replace(of, sets=tuple(map(contents.spelled, of.sets))) for of in parts]
+
     bodies = [
         Named(body, sets, f"geometry.bodies.{body}", index)
         for index, (body, sets) in enumerate(cells.items())
@@ -76,7 +80,8 @@ def bodies_in(
         for index, body in enumerate(cells)
         for name, key in with_material.get(body, {}).items()
     ]
-    return divided(assemble(contents, bodies, list(surfaces)), contents, bodies, parts)
+    bodies, parts = in_file(bodies), in_file(parts)
+    return divided(assemble(contents, bodies, in_file(surfaces)), contents, bodies, parts)
 
 
 def _contents(path: str | None, paths: Mapping[str, str], dim: int) -> MeshContents:

@@ -72,12 +72,21 @@ class MeshContents:
     node_sets : dict of str to ndarray of int
     dim : int
         Dimension of the cells of bodies: 2 of a section, 3 in space.
+    any_case : bool
+        Whether names of sets may be written in another case of letters.
     """
 
     points: np.ndarray
     blocks: list[CellBlock]
     node_sets: dict[str, np.ndarray] = field(default_factory=dict)
     dim: int = 2
+    any_case: bool = False
+
+    def spelled(self, name: str) -> str:
+        """Name of a set as in the file."""
+        known = {*self.node_sets, *(own for block in self.blocks for own in block.sets)}
+        alike = [own for own in known if own.casefold() == name.casefold()]
+        return alike[0] if self.any_case and name not in known and len(alike) == 1 else name
 
     def names(self, dim: int) -> list[str]:
         """Names of sets of elements of a dimension."""
@@ -110,7 +119,7 @@ class MeshContents:
             raise ValueError("nodes must have two or three coordinates")
         if self.points.shape[1] < dim:
             raise ValueError("the nodes of bodies in space need three coordinates")
-        return MeshContents(self.points, blocks, self.node_sets, dim)
+        return MeshContents(self.points, blocks, self.node_sets, dim, self.any_case)
 
 
 def joined(files: list[MeshContents]) -> MeshContents:
@@ -124,7 +133,8 @@ def joined(files: list[MeshContents]) -> MeshContents:
             known = node_sets.get(name, np.empty(0, dtype=np.int64))
             node_sets[name] = np.concatenate([known, nodes + start])
     points = np.concatenate([of.points for of in files])
-    return MeshContents(points, blocks, node_sets, files[0].dim)
+    any_case = any(of.any_case for of in files)
+    return MeshContents(points, blocks, node_sets, files[0].dim, any_case)
 
 
 def numbering(numbers: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:

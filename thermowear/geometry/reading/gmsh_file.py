@@ -121,11 +121,16 @@ def _format(body: bytes) -> _Format:
 
 def _physical_names(body: bytes) -> dict[tuple[int, int], str]:
     """Names by dimension and number of their group."""
-    _, *lines = body.decode("utf-8", "replace").strip().splitlines() or [""]
-    found = {}
+    first, *lines = body.decode("utf-8", "replace").strip().splitlines() or ["0"]
+    found: dict[tuple[int, int], str] = {}
     for line in lines:
         entry = _NAME.fullmatch(line)
         if entry is None:
             raise ValueError(f"{shown(line.encode())} is not a physical name")
-        found[int(entry[1]), int(entry[2])] = entry[3]
+        if found.setdefault((int(entry[1]), int(entry[2])), entry[3]) != entry[3]:
+            raise ValueError(f"the group {entry[2]} of dimension {entry[1]} has two names")
+    if first.strip() != str(len(found)):
+        raise ValueError(
+            f"the section $PhysicalNames announces {first.strip()} names and has {len(found)}"
+        )
     return found

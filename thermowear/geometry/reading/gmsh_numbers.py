@@ -247,6 +247,8 @@ def elements_4(source: Numbers, minor: int, groups) -> list[Elements]:
         entity = (one, other) if minor >= 1 else (other, one)
         kind, count = _kind(number), source.one("size")
         nodes = source.rows(count, ("size", 1 + _NODES[kind]))[0][:, 1:]
+        if groups and entity not in groups:
+            raise ValueError(f"elements lie on the entity {entity}, which $Entities does not list")
         of_all = [np.full(count, group) for group in groups.get(entity, [])]
         result.append(Elements(kind, nodes, of_all))
         total -= count

@@ -54,9 +54,9 @@ def read(path: Path, ending: str) -> dict[str, np.ndarray]:
         cells = [(block.type, block.data) for block in mesh.cells]
     arrays = {"points": np.asarray(mesh.points, dtype=float)}
     contents = {"kinds": [kind for kind, _ in cells], "sets": [], "node_sets": []}
-    for index, (_, nodes) in enumerate(cells):
+    for index, ((_, nodes), sets) in enumerate(zip(cells, _sets_of_blocks(mesh), strict=True)):
         arrays[f"nodes_{index}"] = np.asarray(nodes, dtype=np.int64)
-        for name, members in _sets_of_block(mesh, index).items():
+        for name, members in sets.items():
             arrays[f"set_{len(contents['sets'])}"] = members
             contents["sets"].append([index, name])
     for name, members in _node_sets(mesh).items():
@@ -65,17 +65,37 @@ def read(path: Path, ending: str) -> dict[str, np.ndarray]:
     return arrays | {"contents": np.array(json.dumps(contents))}
 
 
-def _sets_of_block(mesh, index: int) -> dict[str, np.ndarray]:
-    """Sets by name (families of .med), or by the numbers of integer data (.vtu, .xdmf)."""
-    found: list[tuple[str, np.ndarray]] = []
-    for key, data in mesh.cell_data.items():
-        values = np.asarray(data[index])
-        if values.ndim == 1 and np.issubdtype(values.dtype, np.integer):
-            families = getattr(mesh, "cell_tags", {}) if key == "cell_tags" else None
+def _sets_of_blocks(mesh) -> list[dict[str, np.ndarray]]:
+    """Sets by name (families of .med), or by the numbers of integer data (.vtu, .xdmf).
+
+    Of several data, ``"material=1"`` is a number of one of them; a number alone is a set if all
+    data that have it agree.
+    """
+    found: list[list[tuple[str, np.ndarray]]] = [[] for _ in mesh.cells]
+    data = {key: [np.asarray(values) for values in of] for key, of in mesh.cell_data.items()}
+    for key, of_key in list(data.items()):
+        if any(values.ndim > 1 or values.dtype.kind not in "iu" for values in of_key):
+            del data[key]
+    if hasattr(mesh, "cell_tags"):
+        for index, values in enumerate(data.pop("cell_tags", [])):
             for value in np.unique(values):
-                names = [str(value)] if families is None else families.get(value, [])
-                found += [(name, np.flatnonzero(values == value)) for name in names]
-    return _united(found)
+                names = mesh.cell_tags.get(value, [])
+                found[index] += [(name, np.flatnonzero(values == value)) for name in names]
+    if "gmsh:physical" in data:
+        data.pop("gmsh:geometrical", None)  # parts of the drawing
+    members = {
+        key: {int(n): [np.flatnonzero(v == n) for v in of] for n in np.unique(np.concatenate(of))}
+        for key, of in data.items()
+    }
+    for key, sets in members.items():
+        for number, parts in sets.items():
+            others = [of[number] for of in members.values() if number in of]
+            names = [f"{key}={number}"] if len(members) > 1 else []
+            if all(map(np.array_equal, parts * len(others), [p for of in others for p in of])):
+                names.append(str(number))
+            for index, part in enumerate(parts):
+                found[index] += [(name, part) for name in names if len(part)]
+    return [_united(of_block) for of_block in found]
 
 
 def _node_sets(mesh) -> dict[str, np.ndarray]:

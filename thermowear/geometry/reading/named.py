@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import CaseError
+from ...errors import CaseError, note
 from ..checks.solid_checks import at
 from ..mesh.nodes import FACETS, boundary, numbered
 from .contents import CellBlock, MeshContents
@@ -105,10 +105,30 @@ def _members(
         among = np.zeros(1 + max(len(contents.points), *(f.max(initial=0) for f in facets)), bool)
         among[contents.node_sets[name]] = True
         among[len(contents.points) :] = True  # nodes inside serendipity elements
-        return [np.all(among[of_body], axis=1) for of_body in facets]
+        masks = [np.all(among[of_body], axis=1) for of_body in facets]
+        _note_stray(contents, surface, facets, masks)
+        return masks
     known = sorted({*contents.names(dim), *contents.node_sets})
     names = f"one of: {', '.join(known)}" if known else "it names no surface"
     raise CaseError(f"{surface.key}: the file has no surface named {name!r}; {names}")
+
+
+def _note_stray(
+    contents: MeshContents, surface: Named, facets: list[np.ndarray], masks: list[np.ndarray]
+) -> None:
+    """Note nodes of a set on the boundary of a body that are on no facet with all nodes in it."""
+    covered = [of_body[mask] for of_body, mask in zip(facets, masks, strict=True)]
+    on_boundary, on_surface = (
+        np.unique(np.concatenate([of.ravel() for of in parts])) for parts in (facets, covered)
+    )
+    nodes = np.intersect1d(contents.node_sets[surface.sets[0]], on_boundary)
+    stray = np.setdiff1d(nodes, on_surface)
+    if len(stray) and len(on_surface):
+        where = ", ".join(f"{x:.6g} m" for x in contents.points[stray[0]])
+        note(
+            f"{surface.key}: {len(stray)} of {len(nodes)} nodes of {surface.in_file!r} lie on no "
+            f"facet with all nodes in it, one at ({where}); the surface may lack facets"
+        )
 
 
 def _on_facets(

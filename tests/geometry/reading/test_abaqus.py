@@ -53,7 +53,7 @@ def length(mesh: AnyMesh) -> float:
     [
         WHOLE,
         '*SURFACE, NAME=Face, TYPE=ELEMENT\nLEFT, S1\n"Right half", S1',
-        '*surface, name=face,\n type=element\nleft, s1\n3, S1\n4, s1\nLeft, S1',
+        "*surface, name=face,\n type=element\nleft, s1\n3, S1\n4, s1\nLeft, S1",
         "*ELSET, ELSET=bottom\nleft, 3\n*ELSET, ELSET=BOTTOM\n4\n*SURFACE, NAME=FACE\nBottom, S1",
         "*ELSET, ELSET=bottom,\nGENERATE\n1, 4, 1\n*SURFACE, NAME=FACE\nBottom, S1",
         "*INSTANCE, NAME=A-1\n*END INSTANCE\n*SURFACE, NAME=FACE\nA-1.Left, S1\na-1.3, S1\n4, S1",

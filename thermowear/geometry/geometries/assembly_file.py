@@ -21,7 +21,7 @@ from ...case.values.units import Length
 from ..checks.assembly_checks import check_assembly
 from ..reading.bodies import has_surface, read_bodies
 from ..reading.named import Named
-from .mesh_file import CellSets
+from .mesh_file import CellSets, CurvedSurfaces, curved_surfaces
 
 _KEYS = {"body_names": "bodies", "surface_names": "surfaces"}
 """Attributes whose keys are named like properties of every geometry."""
@@ -61,6 +61,8 @@ class AssemblyFile(AssemblyGeometry):
         Key ``surfaces``: surfaces of each body, names in the file by names in the case; a list
         names surfaces by their names in the file. Bodies that share the nodes of their joint may
         both name the same surface of the file.
+    curved : bool or tuple of str
+        Surfaces of cells of order 1 that are smooth, see `mesh_file.MeshFile`.
     """
 
     name = "file"
@@ -74,6 +76,7 @@ class AssemblyFile(AssemblyGeometry):
     thickness: Length = 1e-3
     body_names: dict[str, CellSets] = Field(alias="bodies")
     surface_names: dict[str, SurfaceNames] = Field(alias="surfaces", min_length=1)
+    curved: CurvedSurfaces = False
     _with_material: dict[str, dict[str, str]] = PrivateAttr(default={})
     _in_space: bool = PrivateAttr(default=False)
     _plane: bool = PrivateAttr(default=False)
@@ -111,11 +114,12 @@ class AssemblyFile(AssemblyGeometry):
                         f'{body} = {{ NAME = "{names[name]}" }}',
                     )
                 owners[name] = body
+        curved_surfaces(self.curved, self.surfaces)
 
     @model_serializer(mode="wrap")
     def _by_keys(self, handler) -> dict[str, Any]:
         left_out = set() if self._plane else {"thickness"}
-        left_out |= set() if self.paths else {"paths"}
+        left_out |= (set() if self.paths else {"paths"}) | (set() if self.curved else {"curved"})
         found = {_KEYS.get(name, name): value for name, value in handler(self).items()}
         return {name: value for name, value in found.items() if name not in left_out}
 
@@ -180,6 +184,7 @@ class AssemblyFile(AssemblyGeometry):
             {body: self.sets_of(body) for body in self.bodies},
             surfaces,
             self._with_material,
+            curved_surfaces(self.curved, self.surfaces),
         )
 
     def not_listed(self, surface: str) -> bool:

@@ -51,6 +51,22 @@ def _cell_sets(value: Any) -> Any:
 
 
 CellSets = Annotated[str | tuple[str, ...], BeforeValidator(_cell_sets)]
+CurvedSurfaces = bool | tuple[str, ...]
+
+
+def curved_surfaces(curved: CurvedSurfaces, surfaces: tuple[str, ...]) -> tuple[str, ...]:
+    """Names of surfaces that are smooth, of those of a geometry.
+
+    Raises
+    ------
+    KeyFault
+        If one is unknown.
+    """
+    for name in () if isinstance(curved, bool) else curved:
+        if name not in surfaces:
+            known = ", ".join(surfaces)
+            raise KeyFault("curved", f"unknown surface {name!r}; must be one of: {known}")
+    return (surfaces if curved else ()) if isinstance(curved, bool) else curved
 
 
 class MeshFile(HalvableGeometry):
@@ -96,6 +112,11 @@ class MeshFile(HalvableGeometry):
     contact_area_given : float or None
         Key ``contact_area``: area for a mean pressure, in space by default the lesser one of both
         faces, projected along the load [m²].
+    curved : bool or tuple of str
+        Surfaces of cells of order 1 that are smooth: nodes between corners, whose cells then have
+        order 2, are put on planes, cylinders, cones and spheres (circles in a section) through the
+        corners, or on smooth surfaces. True: all named surfaces. Adjacent facets at more than 40°
+        meet in an edge.
     """
 
     name = "file"
@@ -119,6 +140,7 @@ class MeshFile(HalvableGeometry):
     track_length: Length | None = Field(alias="track", default=None)
     surface_names: dict[str, str] = Field(alias="surfaces", default={})
     contact_area_given: Area | None = Field(alias="contact_area", default=None)
+    curved: CurvedSurfaces = False
     _with_material: dict[str, dict[str, str]] = PrivateAttr(default={})
     _in_space: bool = PrivateAttr(default=False)
     _measured: float | None = PrivateAttr(default=None)
@@ -150,6 +172,7 @@ class MeshFile(HalvableGeometry):
                 if name in seen:
                     raise KeyFault(key, f"{name!r} is used twice; a surface can have one role only")
                 seen.add(name)
+        curved_surfaces(self.curved, self.surfaces)
         return self
 
     def _check_plane(self) -> None:
@@ -175,7 +198,7 @@ class MeshFile(HalvableGeometry):
     @model_serializer(mode="wrap")
     def _by_keys(self, handler) -> dict[str, Any]:
         left_out = {"half", "thickness", "track"} if self._in_space else set(_IN_SPACE)
-        left_out |= set() if self.paths else {"paths"}
+        left_out |= (set() if self.paths else {"paths"}) | (set() if self.curved else {"curved"})
         found = {_KEYS.get(name, name): value for name, value in handler(self).items()}
         return {name: value for name, value in found.items() if name not in left_out}
 
@@ -254,6 +277,7 @@ class MeshFile(HalvableGeometry):
             {body: self.sets_of(body) for body in self.bodies},
             list(self._purposes().values()),
             self._with_material,
+            curved_surfaces(self.curved, self.surfaces),
         )
 
     def not_listed(self, surface: str) -> bool:

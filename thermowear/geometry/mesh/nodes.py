@@ -142,6 +142,16 @@ def components(links: np.ndarray, count: int) -> np.ndarray:
     return scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
 
 
+def centre(nodes: np.ndarray, corners: int, share: int) -> np.ndarray:
+    """Nodes in the middle where the shape functions of serendipity elements imply them, (n, gdim).
+
+    In a face of 8 nodes at half the sum of those in edges less a quarter of that of the corners, in
+    a hexahedron of 20 at a quarter of the sum of those in edges less a quarter of that of the
+    corners; `share` is 2 or 4.
+    """
+    return nodes[:, corners:].sum(axis=1) / share - nodes[:, :corners].sum(axis=1) / 4
+
+
 def turned(cell_type: str, order: int) -> np.ndarray:
     """Permutation of nodes that reverses the orientation of a cell."""
     nodes = reference_nodes(cell_type, order)

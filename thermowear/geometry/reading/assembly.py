@@ -11,7 +11,7 @@ from ...errors import CaseError
 from ..checks.mesh_checks import oriented
 from ..checks.solid_checks import oriented_solid
 from ..mesh.mixed import AnyMesh, of_blocks, retagged
-from ..mesh.nodes import boundary, facet_nodes, numbered
+from ..mesh.nodes import boundary, centre, facet_nodes, numbered
 from ..mesh.tagged import TaggedMesh, compact
 from .contents import CellBlock, MeshContents
 from .named import TYPES, Named, facets_of
@@ -192,12 +192,7 @@ def _check_disjoint(found: list[CellBlock], bodies: list[Named]) -> None:
 def with_inner_nodes(
     points: np.ndarray, nodes: np.ndarray, kind: str
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Add the nodes inside faces and cells that serendipity elements lack.
-
-    They lie where the shape functions of quadrilaterals of 8 nodes, and of hexahedra of 20, imply:
-    in a face at half the sum of its nodes in edges less a quarter of that of its corners, in a
-    hexahedron at a quarter of the sum of its nodes in edges less a quarter of that of its corners.
-    """
+    """Add the nodes inside faces and cells that serendipity elements lack, see `nodes.centre`."""
     if (kind, nodes.shape[1]) not in (("quadrilateral", 8), ("hexahedron", 20)):
         return points, nodes
     cells_of, corners, share = nodes, 4, 2
@@ -207,15 +202,11 @@ def with_inner_nodes(
         number, _ = numbered(faces[:, :4])
         _, first = np.unique(number, return_index=True)
         nodes = np.column_stack([nodes, (len(points) + number).reshape(-1, 6)])
-        points = np.concatenate([points, _centre(points[faces[first]], 4, 2)])
+        points = np.concatenate([points, centre(points[faces[first]], 4, 2)])
         cells_of, corners, share = nodes[:, :20], 8, 4
-    centres = _centre(points[cells_of], corners, share)
+    centres = centre(points[cells_of], corners, share)
     nodes = np.column_stack([nodes, len(points) + np.arange(len(nodes))])
     return np.concatenate([points, centres]), nodes
-
-
-def _centre(x: np.ndarray, corners: int, share: int) -> np.ndarray:
-    return x[:, corners:].sum(axis=1) / share - x[:, :corners].sum(axis=1) / 4
 
 
 def divided(

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ...errors import CaseError
+from ..mesh.curved import curved
 from ..mesh.mixed import AnyMesh
 from .assembly import assemble, divided
 from .contents import MeshContents, joined
@@ -22,6 +23,7 @@ def read_bodies(
     cells: Mapping[str, tuple[str, ...]],
     surfaces: Sequence[Named],
     with_material: Mapping[str, Mapping[str, str]],
+    smooth: Sequence[str] = (),
 ) -> AnyMesh:
     """Read bodies, the nodes of each apart from those of the others.
 
@@ -40,6 +42,8 @@ def read_bodies(
     surfaces : sequence of Named
     with_material : mapping of str to mapping of str to str
         Cell sets that become parts of their own, by body, with the paths of their tables.
+    smooth : sequence of str
+        Surfaces that are curved, see `curved.curved`.
 
     Raises
     ------
@@ -48,7 +52,8 @@ def read_bodies(
     """
     contents = _contents(path, {body: paths[body] for body in cells if paths}, dim)
     contents = replace(contents, points=contents.points * length_unit)
-    return bodies_in(contents, cells, surfaces, with_material)
+    mesh = bodies_in(contents, cells, surfaces, with_material)
+    return curved(mesh, smooth, "geometry.curved") if smooth else mesh
 
 
 def has_surface(name: str, path: str | None, paths: Mapping[str, str], dim: int) -> bool:

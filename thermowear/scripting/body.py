@@ -61,6 +61,10 @@ class MeshBody:
     mid_plane : int or sequence of int
         In space: tags of surfaces on planes z = const that cannot move along z, but freely in the
         plane, also of one on a holder.
+    curved : int or sequence of int
+        Tags of smooth surfaces of straight-sided cells: nodes between corners are put on planes,
+        cylinders, cones and spheres (circles in a section) through the corners, or on smooth
+        surfaces. Adjacent facets at more than 40° meet in an edge.
     """
 
     name: str
@@ -71,6 +75,7 @@ class MeshBody:
     fixed: int | Sequence[int] = ()
     rollers: int | Sequence[int] = ()
     mid_plane: int | Sequence[int] = ()
+    curved: int | Sequence[int] = ()
 
     def __post_init__(self):
         if isinstance(self.materials, Mapping) != hasattr(self.cells, "values"):
@@ -119,12 +124,18 @@ class MeshBody:
             parts[cells[cells < len(parts)]] = part
         return parts
 
+    def _names(self, tags: int | Sequence[int]) -> tuple[str, ...]:
+        """Names of the surfaces with some tags."""
+        return tuple(self.surface(tag).name for tag in np.atleast_1d(np.asarray(tags, dtype=int)))
+
+    @property
+    def smooth(self) -> tuple[str, ...]:
+        """Names of the surfaces that are curved. Every rank calls."""
+        return self._names(self.curved)
+
     def in_model(self, surfaces: tuple[str, ...], held: BodySurface | None) -> Body:
         """Body of a model, with all its surfaces, on a holder or fixed."""
-        fixed, rollers, mid_plane = (
-            tuple(self.surface(tag).name for tag in np.atleast_1d(np.asarray(tags, dtype=int)))
-            for tags in (self.fixed, self.rollers, self.mid_plane)
-        )
+        fixed, rollers, mid_plane = map(self._names, (self.fixed, self.rollers, self.mid_plane))
         if held is not None and fixed:
             raise CaseError(f"Body {self.name!r}: is on a holder; leave out fixed")
         clamped = fixed if held is None else tuple({held.name} - {*rollers, *mid_plane})

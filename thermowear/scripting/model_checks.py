@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from ..errors import CaseError
+from ..geometry.checks.mesh_checks import depth, note_polygons, on_surface
+from ..geometry.mesh.mixed import AnyMesh
 from ..model.conditions import Heat
 from ..model.model import Model
 
@@ -31,6 +35,17 @@ def check(model: Model, known: Sequence[str]) -> None:
         for law in interface.of_temperature:
             name = f" {interface.name!r}" if interface.name else ""
             raise CaseError(f"Interface{name}: {law} depends on T; the model needs heat=Heat(...)")
+
+
+def note_flat_facets(model: Model, mesh: AnyMesh) -> None:
+    """Note flat facets that stand for curved contact faces."""
+    moduli = [m.young_modulus for body in model.bodies for m in body.materials.values()]
+    force = max(holder.force or 0.0 for holder in model.holders)
+    approach = max(holder.approach or 0.0 for holder in model.holders)
+    for interface in model.interfaces:
+        radius = max(np.ptp(on_surface(mesh, face), axis=0).max() / 2 for face in interface.faces)
+        closed = approach + depth(force, np.pi * radius**2, min(moduli), model.thickness)
+        note_polygons(mesh, interface.faces, closed, "Body(curved=[...]) with the tags of {}")
 
 
 def _surfaces(model: Model, known: Sequence[str]) -> None:

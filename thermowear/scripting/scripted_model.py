@@ -25,6 +25,7 @@ from ..model.interface import Interface
 from ..model.model import Discretisation, Model, Solver, hanging_holders
 from ..model.relative_motion import relative_motion
 from ..model.tie import glued_bodies, with_glued
+from ..parallel import on_root
 from ..simulation.analyses.run import needs_single_solution, solve
 from ..simulation.runtime.observer import Observer
 from ..simulation.system.building import build
@@ -37,7 +38,7 @@ from .face_pair import FacePair
 from .face_tie import FaceTie
 from .holding import Rotation, SurfaceHolder, Translation
 from .march import MarchState, march
-from .model_checks import check
+from .model_checks import check, note_flat_facets
 from .solution import ModelSolution
 from .user_mesh import UserMeshes, user_meshes
 
@@ -275,6 +276,7 @@ class ScriptedModel:
             surface_pressures=self._surface_pressures(),
         )
         check(model, meshes.tagged.surfaces)
+        on_root(self.bodies[0].mesh.comm, lambda: note_flat_facets(model, meshes.tagged))
         return model
 
     def _surface_pressures(self) -> dict[str, float]:

@@ -12,6 +12,7 @@ from ..bulk.spaces import Spaces
 from ..compat import coordinate_element, geometry_dofmap
 from ..errors import CaseError
 from ..geometry.checks.mesh_checks import note_size, oriented
+from ..geometry.mesh.curved import curved
 from ..geometry.mesh.mixed import AnyMesh, joined
 from ..geometry.mesh.nodes import CORNERS, FACETS, boundary, reference_nodes
 from ..geometry.mesh.tagged import TaggedMesh, compact
@@ -142,11 +143,13 @@ def user_meshes(bodies: tuple[MeshBody, ...]) -> UserMeshes:
         If a mesh is not supported, or invalid.
     """
     pieces = [_gathered(body) for body in bodies]
+    smooth = [name for body in bodies for name in body.smooth]
 
     def gathered() -> tuple[str, AnyMesh, tuple[np.ndarray, ...]]:
         checked = [_oriented(_in_model(piece)) for piece in pieces if piece is not None]
         pairs = zip(checked, bodies, strict=True)
         tagged = joined([_tagged(piece, body) for (piece, _), body in pairs])
+        tagged = curved(tagged, smooth, "Body.curved") if smooth else tagged
         note_size(tagged, "Body.mesh", "unit of length")
         return tagged.checksum(), tagged, tuple(turned for _, turned in checked)
 

@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from ...case.assembly.holders import pressed
 from ...case.assembly.schema import AssemblyCase
+from ...case.assembly.tables import AssemblyHolderTable
 from ...case.tables.materials import SQUEEZED, check_pressure
 from ...errors import CaseError, note
 from ...laws.motions import NOTHING_PRESSED
@@ -22,7 +23,9 @@ from .mesh_checks import (
     check_one_curve,
     check_pieces,
     check_shared_edges,
+    depth,
     length,
+    note_polygons,
     note_pressure,
     note_size,
     points_of,
@@ -80,6 +83,8 @@ def check_assembly(mesh: AnyMesh, case: AssemblyCase) -> None:
     area, overlaps = 0.0, pressed(case)
     for name in case.contacts:
         faces = _compared(mesh, case, name)
+        if not case.contacts[name].tie:
+            _note_polygons(mesh, case, name, faces)
         if faces is None:  # no bound of the load
             area, overlaps = np.inf, True
             continue
@@ -224,6 +229,29 @@ def _check_distance(case: AssemblyCase, name: str, faces: _Opposite) -> None:
         )
 
 
+def _note_polygons(
+    mesh: AnyMesh, case: AssemblyCase, name: str, opposite: _Opposite | None
+) -> None:
+    """Note flat facets that stand for curved faces, compared with the largest loads of holders."""
+    faces, closed = case.contacts[name].between, 0.0
+    assert faces is not None  # the case has been checked
+    if opposite is not None:
+        modulus = min(_modulus(case, part) for part in case.geometry.parts)
+        loads = [_loads(holder) for holder in case.holders.values()] or [(0.0, 0.0)]
+        forces, approaches = zip(*loads, strict=True)
+        thickness = case.geometry.thickness_factor
+        closed = max(approaches) + depth(max(forces), opposite.area, modulus, thickness)
+        closed = closed or -opposite.gap
+    note_polygons(mesh, faces, closed, "geometry.curved = [{}]")
+
+
+def _loads(holder: AssemblyHolderTable) -> tuple[float, float]:
+    """Largest force [N] and approach [m] of a holder."""
+    history = holder.history
+    courses = (None, None) if history is None else (history.force, history.approach)
+    return max(courses[0] or (holder.force or 0.0,)), max(courses[1] or (holder.approach or 0.0,))
+
+
 def _check_loads(mesh: AnyMesh, case: AssemblyCase, area: float) -> None:
     """Check that forces and approaches are small, as wrong units are not.
 
@@ -235,13 +263,10 @@ def _check_loads(mesh: AnyMesh, case: AssemblyCase, area: float) -> None:
         Of all contacts, which bear a force together at the most [m²].
     """
     for name, holder in case.holders.items():
-        history = holder.history
-        courses = (None, None) if history is None else (history.force, history.approach)
-        force = max(courses[0] or (holder.force or 0.0,))
+        force, approach = _loads(holder)
         if area > 0.0:
             note_pressure(f"holders.{name}.force", force / area)
             check_pressure(f"holders.{name}.force", force / area, " on all contacts", case)
-        approach = max(courses[1] or (holder.approach or 0.0,))
         size = float(np.ptp(mesh.points, axis=0).max())
         if approach > SQUEEZED * size:
             unit = "geometry.length_unit" if case.geometry.from_file else "the units"

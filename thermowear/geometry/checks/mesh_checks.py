@@ -14,6 +14,7 @@ import scipy
 from ...case.assembly.geometry import AssemblyGeometry
 from ...case.tables.geometry import Geometry
 from ...errors import CaseError, note
+from ..mesh.curved import Curving, curving
 from ..mesh.mixed import AnyMesh, block_of, block_with, retagged
 from ..mesh.nodes import CORNERS, boundary, components, meeting, numbered, turned
 from ..mesh.tagged import TaggedMesh, jacobians
@@ -26,6 +27,8 @@ _LARGE = 2.0
 """Size of a body above which a note is issued [m]."""
 _NO_PRESSURE = 1.0
 """Mean pressure below which a note is issued [Pa]."""
+_CHORDS = 0.01
+"""Distance of chords from arcs relative to the depth that a load closes; a note is issued above."""
 AnyMeshed = Geometry | AssemblyGeometry
 """Geometry of two bodies, or of several."""
 LEVEL = 1e-6
@@ -191,6 +194,56 @@ def note_pressure(key: str, pressure: float) -> None:
     """Note a mean pressure that no load causes, as in a wrong unit of length [Pa]."""
     if 0.0 < pressure < _NO_PRESSURE:
         note(f"{key}: the mean pressure is {pressure:.3g} Pa; wrong length_unit?")
+
+
+def depth(force: float, area: float, modulus: float, thickness: float | None) -> float:
+    """Rough approach of bodies whose whole faces touch, as by a flat punch [m].
+
+    Parameters
+    ----------
+    force : float
+        [N]
+    area : float
+        Of the face [m²].
+    modulus : float
+        Of the softer body [Pa].
+    thickness : float or None
+        Of a plane model [m].
+    """
+    width = thickness or 2 * np.sqrt(area / np.pi)
+    return force / (width * modulus) if width > 0.0 else 0.0
+
+
+def note_polygons(mesh: AnyMesh, faces: Sequence[str], closed: float, advice: str) -> None:
+    """Note contact faces of straight-sided cells that stand for curved ones.
+
+    Parameters
+    ----------
+    mesh : TaggedMesh or MixedMesh
+    faces : sequence of str
+        Both faces of a contact.
+    closed : float
+        Depth that the load closes; not positive if it is not known [m].
+    advice : str
+        What to do, with ``{}`` for the names of the faces.
+    """
+    found: dict[str, Curving] = {}
+    for face in faces:
+        block = block_with(mesh, face)
+        if block.order <= 2:
+            found[face] = curving(block, [face])
+    heights = {face: of.heights[face] for face, of in found.items() if of.heights[face] > 0.0}
+    if not heights or sum(heights.values()) <= _CHORDS * closed:
+        return
+    angle = np.degrees(max(found[face].angles[face] for face in heights))
+    against = f", where the load closes about {length(closed)}" if closed > 0.0 else ""
+    names = " and ".join(map(repr, heights))
+    note(
+        f"{names}: facets are flat, their normals jump by up to {angle:.2g}°, and the smooth face "
+        f"lies up to {' and '.join(map(length, heights.values()))} off them{against}; pressures "
+        f"are those of the edges between facets, also with a higher mesh.degree: {advice} curves "
+        "the cells there".replace("{}", ", ".join(f'"{face}"' for face in heights))
+    )
 
 
 def length(value: float) -> str:

@@ -16,7 +16,15 @@ from ...errors import CaseError, note
 from ..mesh.mixed import AnyMesh, block_with
 from ..mesh.nodes import shape_functions
 from ..mesh.tagged import TaggedMesh
-from .mesh_checks import length, note_pressure, note_size, points_of, whole_bodies
+from .mesh_checks import (
+    depth,
+    length,
+    note_polygons,
+    note_pressure,
+    note_size,
+    points_of,
+    whole_bodies,
+)
 from .solid_pairs import compared_solids
 
 if TYPE_CHECKING:
@@ -82,6 +90,13 @@ def check_pair(mesh: AnyMesh, case: Case) -> None:
     if approach is not None:
         _check_approach(case, faces, approach, of_body)
     _check_pressure(case, faces)
+    force, closed = case.force(), overlap
+    if approach is not None:
+        closed = approach - faces.gap
+    elif force is not None:
+        thickness = case.geometry.thickness_factor
+        closed = depth(force, faces.area, min(_moduli(case).values()), thickness)
+    note_polygons(bodies, case.geometry.contact, closed, "geometry.curved = [{}]")
     if overlap > MUCH * height:
         note(
             f"geometry.path: the bodies overlap by {length(overlap)} before loading{faces.where}, "
@@ -117,6 +132,15 @@ def _check_pressure(case: Case, faces: _Faces) -> None:
         return
     note_pressure("load", force / area)
     check_pressure("load", force / area, f", for contact {faces.extent} of the faces,", case)
+
+
+def _moduli(case: Case) -> dict[str, float]:
+    """Young's modulus of each part [Pa]."""
+    return {
+        part: case.material(part).young_modulus or np.inf
+        for body in case.geometry.bodies
+        for part in case.geometry.parts_of(body)
+    }
 
 
 def _compared(mesh: AnyMesh, case: Case) -> _Faces:

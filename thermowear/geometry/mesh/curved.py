@@ -33,6 +33,10 @@ _FITS = 0.02
 """Largest distance of corners from a shape, relative to the height of arcs."""
 _LEVEL = 1e-6
 """Height of arcs relative to the size of a patch below which it is flat."""
+_CORNERS = {3: 2, 6: 3, 9: 4}
+"""Number of corners of a facet of order 2 by its nodes."""
+_STRAIGHT = 0.05
+"""Distance of nodes between corners from chords, relative to the height of arcs, of flat facets."""
 _SWEEPS, _SETTLED = 200, 1e-14
 """Largest number of sweeps over all patches, and movement relative to the size that ends them."""
 _THIN = 0.02
@@ -41,17 +45,19 @@ _THIN = 0.02
 
 @dataclass(frozen=True)
 class Curving:
-    """Mesh with cells of order 2 whose nodes lie on smooth faces.
+    """Mesh with cells of order 2 whose nodes have been moved onto smooth faces.
 
     Attributes
     ----------
-    mesh : TaggedMesh
+    straight, mesh : TaggedMesh
+        Before and after.
     heights : dict of str to float
         Largest distance that a node has moved, by surface [m].
     angles : dict of str to float
         Largest angle between adjacent facets of one patch, by surface [rad].
     """
 
+    straight: TaggedMesh
     mesh: TaggedMesh
     heights: dict[str, float]
     angles: dict[str, float]
@@ -79,27 +85,33 @@ class _Patch:
         Coordinates of all corners [m].
     tolerance : float
         Distance of corners from a shape that is allowed [m].
+    flat : bool
+        Whether the nodes between corners are in the middle of chords.
+    shape : Projection or None
+        Projection on the simple shape of the corners, if they have one.
     """
 
     def __init__(self, points: np.ndarray, nodes: np.ndarray, members: np.ndarray, angle: float):
         self.points, self.members, self.angle = points, members, angle
         self.nodes = nodes = nodes[members]
-        count = {3: 2, 6: 3, 9: 4}[nodes.shape[1]]
+        count = _CORNERS[nodes.shape[1]]
         self.corners = nodes[:, :count]
         self.normals = _normals(points[self.corners])
         of_edges = nodes[:, count : (3 if count == 2 else 2 * count)].ravel()
         self.middle, first = np.unique(of_edges, return_index=True)
         self.ends = _edges(self.corners)[first]
         self.places = points[np.unique(self.corners)]
-        chords = np.linalg.norm(points[self.ends[:, 1]] - points[self.ends[:, 0]], axis=1)
-        self.height = angle * float(chords.max()) / 8
+        a, b = points[self.ends.T]
+        self.height = angle * float(np.linalg.norm(b - a, axis=1).max()) / 8
+        off = np.linalg.norm(points[self.middle] - (a + b) / 2, axis=1)
+        self.flat = float(off.max()) <= _STRAIGHT * self.height
         self.level = _LEVEL * float(np.ptp(self.places, axis=0).max())
         self.tolerance = max(_FITS * self.height, self.level)
         self.shape = self._shape()
 
     def _shape(self) -> Projection | None:
         """Projection on the simple shape of the corners; None if they have none."""
-        if self.height < self.level:
+        if not self.flat or self.height < self.level:
             return _as_it_is
         in_section = self.points.shape[1] == 2
         fits = (_sphere,) if in_section else (_plane, _cone, _sphere)
@@ -159,7 +171,7 @@ class _Patch:
 
 
 def curved(mesh: AnyMesh, surfaces: Sequence[str], key: str) -> AnyMesh:
-    """Mesh whose surfaces are smooth; blocks of order 2 or 3 stay as they are.
+    """Mesh whose surfaces are smooth, with cells of order 2; those of order 3 stay as they are.
 
     Raises
     ------
@@ -168,19 +180,19 @@ def curved(mesh: AnyMesh, surfaces: Sequence[str], key: str) -> AnyMesh:
     """
     return of_blocks(
         [
-            _valid(block, curving(block, surfaces), key) if block.order == 1 else block
+            _valid(block, curving(block, surfaces), key) if block.order <= 2 else block
             for block in mesh.blocks
         ]
     )
 
 
-def _valid(straight: TaggedMesh, found: Curving, key: str) -> TaggedMesh:
+def _valid(given: TaggedMesh, found: Curving, key: str) -> TaggedMesh:
     """Curved mesh; nodes inside follow where cells would be tangled otherwise."""
     if not any(found.heights.values()):
-        return straight
+        return given
     mesh = found.mesh
     if not scaled_jacobians(mesh).min() > _THIN:
-        mesh = _followed(quadratic(straight), mesh)
+        mesh = _followed(found.straight, mesh)
     tangled = ~(scaled_jacobians(mesh) > 0.0)
     if tangled.any():
         where = ", ".join(f"{x:.6g} m" for x in mesh.points[mesh.cells[np.argmax(tangled), 0]])
@@ -192,11 +204,16 @@ def _valid(straight: TaggedMesh, found: Curving, key: str) -> TaggedMesh:
 
 
 def curving(mesh: TaggedMesh, surfaces: Sequence[str]) -> Curving:
-    """Move the nodes between the corners of surfaces of a mesh with cells of order 1."""
-    second = quadratic(mesh)
+    """Move the nodes between the corners of surfaces, of cells of order 1 or of flat facets."""
+    second = quadratic(mesh) if mesh.order == 1 else mesh
     points = second.points.copy()
-    of_surface = {name: list(_patches(mesh, second, name)) for name in surfaces}
-    bent = [p for patches in of_surface.values() for p in patches if p.shape is not _as_it_is]
+    of_surface = {name: list(_patches(second, name)) for name in surfaces}
+    bent = [
+        patch
+        for patches in of_surface.values()
+        for patch in patches
+        if patch.shape is not _as_it_is
+    ]
     steps = [patch.steps() for patch in bent]
     if bent and points.shape[1] == 3:
         steps += _level_rims(second, bent)
@@ -218,15 +235,17 @@ def curving(mesh: TaggedMesh, surfaces: Sequence[str]) -> Curving:
         moved = np.linalg.norm(points[nodes] - second.points[nodes], axis=1)
         heights[name] = float(moved.max(initial=0.0))
     angles = {name: max((p.angle for p in of), default=0.0) for name, of in of_surface.items()}
-    return Curving(replace(second, points=points), heights, angles)
+    return Curving(second, replace(second, points=points), heights, angles)
 
 
-def _patches(mesh: TaggedMesh, second: TaggedMesh, surface: str) -> Iterator[_Patch]:
-    """Smooth parts of a surface."""
-    corners, nodes = mesh.facets_of(surface), second.facets_of(surface)
-    if not len(corners):
+def _patches(mesh: TaggedMesh, surface: str) -> Iterator[_Patch]:
+    """Smooth parts of a surface of cells of order 2."""
+    nodes = mesh.facets_of(surface)
+    if not len(nodes):
         return
-    normals, count = _normals(mesh.points[corners]), corners.shape[1]
+    count = _CORNERS[nodes.shape[1]]
+    corners = nodes[:, :count]
+    normals = _normals(mesh.points[corners])
     joints = corners.reshape(-1, 1) if count == 2 else _edges(corners)
     pairs = meeting(joints) // count
     between = 2 * np.arctan2(
@@ -243,7 +262,7 @@ def _patches(mesh: TaggedMesh, second: TaggedMesh, surface: str) -> Iterator[_Pa
         if sizes.min() < fewest:
             return []
         groups = [members[label[members] == k] for k in number]
-        return [_Patch(second.points, nodes, g, angle[label[g[0]]]) for g in groups]
+        return [_Patch(mesh.points, nodes, g, angle[label[g[0]]]) for g in groups]
 
     for patch in parts(np.arange(len(corners)), _CORNER):
         finer = (
@@ -302,7 +321,7 @@ def _followed(straight: TaggedMesh, mesh: TaggedMesh) -> TaggedMesh:
     links = links + links.T
     matrix = scipy.sparse.diags(np.asarray(links.sum(axis=1)).ravel()) - links
     around = boundary(mesh.cell_type, 2, mesh.cells)
-    corners = {3: 2, 6: 3, 9: 4}[around.shape[1]]
+    corners = _CORNERS[around.shape[1]]
     held = np.any(moves != 0.0, axis=1)
     at_face = np.isin(around, np.flatnonzero(held)).any(axis=1)
     held[around[:, :corners]] = True

@@ -23,9 +23,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...contact.search.pairing import pair
+from ...contact.search.pairing import PairedFace, pair
 from ...contact.solvers.enriched_pressure import enriched_pressure, linearised_pressure
 from ...errors import CaseError, ComputationError
+from ...lagrange import lattice
 from ...model.analyses import Analysis
 from ...results import InterfaceFields
 from ..interface.steady import principle
@@ -48,6 +49,8 @@ _FLAT = 1e-9
 """Range of a shape at rounding level, relative to the elastic deflection."""
 
 
+_FLAT_COSINE, _EDGE_COSINE = np.cos(np.radians([0.1, 20.0]))
+"""Cosine between the normals of a facet and of a face, of flat facets and at an edge."""
 _NAMES = {"max_pressure": "largest pressure"}
 _ISOTHERMAL = "isothermal"
 _AMBIENT = "no temperature differs from the ambient one"
@@ -67,10 +70,13 @@ class ErrorEstimates:
         Errors of pressure, max_pressure, shape and temperature.
     missing : dict of str to str
         Reason for a missing estimate, by quantity.
+    flat_facets : bool
+        Whether flat facets stand for a curved face, whose error the estimate does not include.
     """
 
     errors: dict[str, float | None]
     missing: dict[str, str]
+    flat_facets: bool = False
 
     def summary(self) -> dict:
         """Keys of ``summary.json``."""
@@ -83,11 +89,15 @@ class ErrorEstimates:
         above = {q: e for q, e in self.errors.items() if e and e > WORTH_A_WARNING}
         if above:
             large = ", ".join(f"{_NAMES.get(q, q)} {100 * e:.2g} %" for q, e in above.items())
-            notes.append(
-                f"estimated discretisation error above 5 %: {large}; use more mesh.elements, "
-                "for CAD parts a smaller mesh.contact_size, or a higher mesh.degree, and compare "
-                "by `run --accuracy`"
+            advice = (
+                "flat facets stand for a curved contact face, and the pressures of their edges do "
+                "not converge with mesh.degree; curve them by geometry.curved, or by cells of "
+                "order 2"
+                if self.flat_facets
+                else "use more mesh.elements, for CAD parts a smaller mesh.contact_size, or a "
+                "higher mesh.degree, and compare by `run --accuracy`"
             )
+            notes.append(f"estimated discretisation error above 5 %: {large}; {advice}")
         reasons = {q: why for q, why in self.missing.items() if why not in _NOTHING_TO_ESTIMATE}
         for reason in dict.fromkeys(reasons.values()):
             quantities = " and ".join(q for q, why in reasons.items() if why == reason)
@@ -112,9 +122,10 @@ def estimate_errors(analysis: Analysis, end: Snapshot, time: float) -> ErrorEsti
         missing["temperature"] = why or _AMBIENT
     bodies = EnrichedBodies(system)
     opened = bodies.opening(end.contact, end.bodies, heated)
+    flat = any(_flat_facets(side) for one in system.contacts.each for side in one.sides)
     if not end.interface.pressure.any():
         missing["pressure"] = missing["shape"] = _OPEN
-        return ErrorEstimates(errors, missing)
+        return ErrorEstimates(errors, missing, flat)
     change = opened if steady else None
     try:
         if steady:
@@ -136,7 +147,20 @@ def estimate_errors(analysis: Analysis, end: Snapshot, time: float) -> ErrorEsti
         missing["shape"] = missing["pressure"]
     else:
         errors["shape"] = _of_shape(end, change, shaped, ~(steady & system.at_rest))
-    return ErrorEstimates(errors, missing)
+    return ErrorEstimates(errors, missing, flat)
+
+
+def _flat_facets(side: PairedFace) -> bool:
+    """Whether adjacent facets of order 1 are turned against each other, but not as at an edge."""
+    face = side.face
+    if face.order > 1:
+        return False
+    normals = face.normals(*face.on_each(lattice(1, face.kind).reshape(-1, face.dim)))
+    corners = face.corner_numbers.ravel()
+    mean = np.zeros((corners.max() + 1, normals.shape[1]))
+    np.add.at(mean, corners, normals)
+    cosines = np.sum(normals * mean[corners], axis=1) / np.linalg.norm(mean, axis=1)[corners]
+    return bool(np.any((cosines < _FLAT_COSINE) & (cosines > _EDGE_COSINE)))
 
 
 def _singular(end: Snapshot) -> bool:

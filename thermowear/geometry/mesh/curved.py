@@ -25,6 +25,8 @@ Projection = Callable[[np.ndarray], np.ndarray]
 """Nearest points on a shape to points (n, gdim)."""
 _CORNER = float(np.radians(40.0))
 """Angle between facets of different patches."""
+_ONWARD = np.cos(np.radians(15.0))
+"""Cosine between a patch and a flat facet beyond its rim above which the facet continues it."""
 _FINER = np.radians([20.0, 10.0, 5.0, 2.0])
 """Angles at which a patch of no simple shape is divided if all of its parts have one."""
 _FEWEST = {2: 2, 3: 3}
@@ -37,7 +39,7 @@ _CORNERS = {3: 2, 6: 3, 9: 4}
 """Number of corners of a facet of order 2 by its nodes."""
 _STRAIGHT = 0.05
 """Distance of nodes between corners from chords, relative to the height of arcs, of flat facets."""
-_SWEEPS, _SETTLED = 200, 1e-14
+_SWEEPS, _SETTLED = 300, 1e-14
 """Largest number of sweeps over all patches, and movement relative to the size that ends them."""
 _THIN = 0.02
 """Scaled Jacobian of curved cells below which the nodes further inside follow."""
@@ -51,6 +53,8 @@ class Curving:
     ----------
     straight, mesh : TaggedMesh
         Before and after.
+    nodes : ndarray of int
+        Nodes of the curved facets.
     heights : dict of str to float
         Largest distance that a node has moved, by surface [m].
     angles : dict of str to float
@@ -59,6 +63,7 @@ class Curving:
 
     straight: TaggedMesh
     mesh: TaggedMesh
+    nodes: np.ndarray
     heights: dict[str, float]
     angles: dict[str, float]
 
@@ -192,7 +197,7 @@ def _valid(given: TaggedMesh, found: Curving, key: str) -> TaggedMesh:
         return given
     mesh = found.mesh
     if not scaled_jacobians(mesh).min() > _THIN:
-        mesh = _followed(found.straight, mesh)
+        mesh = _followed(found)
     tangled = ~(scaled_jacobians(mesh) > 0.0)
     if tangled.any():
         where = ", ".join(f"{x:.6g} m" for x in mesh.points[mesh.cells[np.argmax(tangled), 0]])
@@ -235,7 +240,8 @@ def curving(mesh: TaggedMesh, surfaces: Sequence[str]) -> Curving:
         moved = np.linalg.norm(points[nodes] - second.points[nodes], axis=1)
         heights[name] = float(moved.max(initial=0.0))
     angles = {name: max((p.angle for p in of), default=0.0) for name, of in of_surface.items()}
-    return Curving(second, replace(second, points=points), heights, angles)
+    curved_nodes = np.unique(np.concatenate([np.empty(0, int), *(p.nodes.ravel() for p in bent)]))
+    return Curving(second, replace(second, points=points), curved_nodes, heights, angles)
 
 
 def _patches(mesh: TaggedMesh, surface: str) -> Iterator[_Patch]:
@@ -287,7 +293,7 @@ def _level_rims(mesh: TaggedMesh, patches: Sequence[_Patch]) -> list[tuple[np.nd
     levels, steps = _normals(mesh.points[around[:, :count]]), []
     for side in range(count):
         nodes = around[:, count + side]
-        turned = np.abs(np.einsum("ni,ni->n", normal[nodes], levels)) < np.cos(_CORNER)
+        turned = np.abs(np.einsum("ni,ni->n", normal[nodes], levels)) < _ONWARD
         places = mesh.points[around[turned, 0]]
         steps.append((nodes[turned], _on_planes(places, levels[turned])))
     return [step for step in steps if len(step[0])]
@@ -305,11 +311,12 @@ def _centred(mesh: TaggedMesh, points: np.ndarray) -> np.ndarray:
     return points
 
 
-def _followed(straight: TaggedMesh, mesh: TaggedMesh) -> TaggedMesh:
+def _followed(found: Curving) -> TaggedMesh:
     """Mesh whose nodes inside have moved like those around them, by harmonic displacements.
 
     Corners on the boundary stay, and nodes between them stay in their flat facets.
     """
+    straight, mesh = found.straight, found.mesh
     moves = mesh.points - straight.points
     places = reference_nodes(mesh.cell_type, 2)
     near = np.linalg.norm(places[:, None] - places, axis=2) < 0.75
@@ -322,9 +329,9 @@ def _followed(straight: TaggedMesh, mesh: TaggedMesh) -> TaggedMesh:
     matrix = scipy.sparse.diags(np.asarray(links.sum(axis=1)).ravel()) - links
     around = boundary(mesh.cell_type, 2, mesh.cells)
     corners = _CORNERS[around.shape[1]]
-    held = np.any(moves != 0.0, axis=1)
-    at_face = np.isin(around, np.flatnonzero(held)).any(axis=1)
+    held = np.zeros(count, dtype=bool)
     held[around[:, :corners]] = True
+    held[found.nodes] = True
     free = np.flatnonzero(~held)
     inner = matrix[free][:, free]
     preconditioner = scipy.sparse.diags(1 / inner.diagonal())
@@ -333,10 +340,10 @@ def _followed(straight: TaggedMesh, mesh: TaggedMesh) -> TaggedMesh:
         moves[free, axis], _ = scipy.sparse.linalg.cg(
             inner, given[:, axis], rtol=1e-6, maxiter=1000, M=preconditioner
         )
-    beyond = around[~at_face]
-    levels = _normals(straight.points[beyond[:, :corners]])
-    for nodes in beyond[:, corners:].T:
-        moves[nodes] -= _along(moves[nodes], levels)
+    levels = _normals(straight.points[around[:, :corners]])
+    for nodes in around[:, corners:].T:
+        own = ~held[nodes]
+        moves[nodes[own]] -= _along(moves[nodes[own]], levels[own])
     return replace(mesh, points=_centred(mesh, straight.points + moves))
 
 

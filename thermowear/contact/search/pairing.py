@@ -35,7 +35,8 @@ _COINCIDENCE_TOLERANCE = 1e-10
 _AT_EDGE = 1e-2
 """Largest distance of points at the edge of a facet, relative to it."""
 _MAX_OVERLAP = 1e-3
-"""Fraction of a facet that may be covered twice, by rounding and curved edges."""
+"""Fraction of a facet that may be covered twice, by rounding and curved edges, unless the other face
+is farther away than the facet is long."""
 
 
 @dataclass(frozen=True)
@@ -219,7 +220,15 @@ def paired(
     weights *= np.maximum(kinematics.area_factor(on_common), 0.0)  # rounding on the axis
     covered = np.bincount(facet, pieces.weight / face_1.measure, minlength=len(face_1.sizes))
     if covered.max() > 1.0 + _MAX_OVERLAP:
-        raise CaseError(ambiguity_message(face_1, face_2))
+        nearest = np.full(len(covered), np.inf)
+        np.minimum.at(nearest, facet, np.abs(pairs.gap))
+        apart = nearest > face_1.sizes ** (1 / face_1.dim)
+        if np.any(covered[~apart] > 1.0 + _MAX_OVERLAP):
+            raise CaseError(ambiguity_message(face_1, face_2))
+        # the opposite points of such facets are those of their continuation, which is not unique
+        share = 1 / np.where(apart, np.maximum(covered, 1.0), 1.0)
+        pieces = replace(pieces, weight=pieces.weight * share[facet])
+        weights, covered = weights * share[facet], covered * share
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
     position = face_1.position(facet, t)
     groups, point = _groups(face_1, facet, t, face_2.group_at(pairs.facet)), pieces.point

@@ -186,6 +186,30 @@ def test_initial_gap_is_open_where_positive(distance):
     np.testing.assert_allclose(pairing.gap, distance, rtol=1e-9)
 
 
+def dome(p):
+    """Curved facets on a sphere that touches the other face at its pole, of uneven sizes."""
+    x, y, z = np.moveaxis(p, -1, 0)
+    x, y = x + 4e-4 * np.sin(900 * x + 500 * y), y + 4e-4 * np.sin(700 * y - 650 * x + 1)
+    radius = 0.032
+    square = (x - SIZE[0] / 2) ** 2 + (y - SIZE[1] / 2) ** 2
+    return np.stack([x, y, z + radius - np.sqrt(radius**2 - square)], axis=-1)
+
+
+def test_facets_far_from_the_other_face_are_covered_at_most_once():
+    """requirement: near the rim of a cap of a ball, the gap to a flat face is longer than facets,
+    and which points meet is not unique there: their area counts once, and the cap is not refused;
+    near the pole facets are covered exactly once.
+    """
+    upper, lower = faces(((24, 18, 1), (6, 5, 1)), 2, (dome, straight), "tetrahedron")
+    pairing = pair(upper, lower, Spatial(), 4)
+    pieces = pairing.pieces
+    covered = np.bincount(pieces.facet, pieces.weight, len(upper.sizes)) / upper.measure
+    assert covered.max() < 1 + 1e-3
+    middle = upper.points(*upper.on_each(np.full((1, 2), 1 / 3)))
+    near = np.linalg.norm(middle[:, :2] - np.array(SIZE) / 2, axis=1) < 4e-3
+    np.testing.assert_allclose(covered[near], 1.0, rtol=1e-3)
+
+
 def test_points_without_a_partner_are_outside_the_contact():
     """requirement: where body 2 ends, contact ends, exactly there."""
     upper, lower = faces()

@@ -35,8 +35,8 @@ _COINCIDENCE_TOLERANCE = 1e-10
 _AT_EDGE = 1e-2
 """Largest distance of points at the edge of a facet, relative to it."""
 _MAX_OVERLAP = 1e-3
-"""Fraction of a facet that may be covered twice, by rounding and curved edges, unless the other face
-is farther away than the facet is long."""
+"""Fraction of a facet that may be covered twice, by rounding and curved edges; any on facets that
+are shorter than the gap."""
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..mesh.tagged import jacobians
 from .request import CadError
+from .sizes import width
 from .solids import UNIT, CadBody, CadFace, in_mm
 
 _TETRAHEDRON, _TRIANGLE = 11, 9
@@ -38,7 +39,8 @@ def make_mesh(gmsh, bodies: Sequence[CadBody]) -> None:
     except CadError:
         raise
     except Exception as trouble:  # gmsh raises nothing more specific
-        raise CadError(f"mesh.size: gmsh could not mesh the bodies: {trouble}") from None
+        reason = str(trouble).strip() or f"it gave no reason; {_narrowest(gmsh, bodies)}"
+        raise CadError(f"mesh.size: gmsh could not mesh the bodies: {reason}") from None
     for body in bodies:
         found = _quality(gmsh, body)
         if found.min() < _LEAST:
@@ -48,6 +50,17 @@ def make_mesh(gmsh, bodies: Sequence[CadBody]) -> None:
                 f"{body.name!r} are tangled (smallest scaled Jacobian {found.min():.2g}), one at "
                 f"{in_mm(where)}; use smaller elements"
             )
+
+
+def _narrowest(gmsh, bodies: Sequence[CadBody]) -> str:
+    """Text on the narrowest face of all bodies, which often cannot be meshed."""
+    faces = [(width(gmsh, face), body.name, face) for body in bodies for face in body.faces]
+    size, name, face = min(faces, key=lambda of: of[0])
+    return (
+        f"the narrowest face, {size:.3g} mm wide, is one of {name!r} near "
+        f"{in_mm(np.mean(face.box, axis=0))}: leave it out in the CAD program, or use a smaller "
+        "mesh.size"
+    )
 
 
 def _best_mesh(gmsh, bodies: Sequence[CadBody]) -> float:

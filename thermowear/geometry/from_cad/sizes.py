@@ -103,9 +103,7 @@ def _at_narrow_faces(gmsh, body: CadBody) -> list[int]:
     fields, tags = gmsh.model.mesh.field, [solid.tag for solid in body.solids]
     size, groups = body.element_sizes[0], dict[int, list[CadFace]]()
     for face in body.faces:
-        edges = gmsh.model.getBoundary([(2, face.tag)], combined=False, oriented=False)
-        around = sum(gmsh.model.occ.getMass(1, tag) for _, tag in edges)
-        near = _PER_WIDTH * 2 * face.area / around
+        near = _PER_WIDTH * width(gmsh, face)
         if near < size:
             groups.setdefault(math.floor(2 * math.log2(near / size)), []).append(face)
     result = []
@@ -115,6 +113,13 @@ def _at_narrow_faces(gmsh, body: CadBody) -> list[int]:
         field = _towards(fields, "SurfacesList", of_faces, near, size, _extent(faces))
         result.append(_within(fields, field, tags, _boundary(gmsh, tags)))
     return result
+
+
+def width(gmsh, face: CadFace) -> float:
+    """Width of a long face, from its area and the length of its edges [mm]."""
+    edges = gmsh.model.getBoundary([(2, face.tag)], combined=False, oriented=False)
+    around = sum(gmsh.model.occ.getMass(1, tag) for _, tag in edges)
+    return 2 * face.area / around if around else np.inf
 
 
 def _towards(fields, key: str, entities: list[int], near: float, far: float, extent: float) -> int:

@@ -189,7 +189,7 @@ def test_initial_gap_is_open_where_positive(distance):
 def dome(p):
     """Curved facets on a sphere that touches the other face at its pole, of uneven sizes."""
     x, y, z = np.moveaxis(p, -1, 0)
-    x, y = x + 4e-4 * np.sin(900 * x + 500 * y), y + 4e-4 * np.sin(700 * y - 650 * x + 1)
+    x, y = x + 2e-4 * np.sin(900 * x + 500 * y), y + 2e-4 * np.sin(700 * y - 650 * x + 1)
     radius = 0.032
     square = (x - SIZE[0] / 2) ** 2 + (y - SIZE[1] / 2) ** 2
     return np.stack([x, y, z + radius - np.sqrt(radius**2 - square)], axis=-1)

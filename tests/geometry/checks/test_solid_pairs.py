@@ -11,12 +11,7 @@ def bore(columns: int) -> TaggedMesh:
     """Hexahedra round a bore of radius 1 along y of length 3; its face is S."""
     angles = np.linspace(0, 2 * np.pi, columns, endpoint=False)
     points = np.array(
-        [
-            (r * np.cos(a), y, r * np.sin(a))
-            for r in (1.0, 2.0)
-            for y in (0.0, 3.0)
-            for a in angles
-        ]
+        [(r * np.cos(a), y, r * np.sin(a)) for r in (1.0, 2.0) for y in (0.0, 3.0) for a in angles]
     )
     one = np.arange(columns)
     two = np.roll(one, -1)

@@ -40,8 +40,21 @@ def check(case: AssemblyCase) -> None:
             "bodies: planes of symmetry cut a sector from rotating bodies; the shear of friction, "
             "which twists the whole ring, is left out (its heat and wear are not)"
         )
+    _note_left_out(case)
     _note_default_per(case)
     note_assembly_defaults(case)
+
+
+def _note_left_out(case: AssemblyCase) -> None:
+    """Note contacts of the geometry without a table, whose faces then do not touch."""
+    known = {frozenset(table.between or ()) for table in case.contacts.values()}
+    for name, faces in case.geometry.contacts.items():
+        if frozenset(faces) not in known:
+            one, other = faces
+            note(
+                f"contacts: {name!r}, where {one!r} and {other!r} touch, has no table and is left "
+                f"out: its faces can pass through each other; add [contacts.{name}]"
+            )
 
 
 def _note_default_per(case: AssemblyCase) -> None:

@@ -135,6 +135,13 @@ def located_material(
     return path, table
 
 
+def softest(case: Any) -> tuple[str, float]:
+    """Part of a case with the least modulus, and that modulus [Pa]."""
+    moduli = {p: case.located_material(p)[1].young_modulus or math.inf for p in case.geometry.parts}
+    softer = min(moduli, key=moduli.__getitem__)
+    return softer, moduli[softer]
+
+
 def check_pressure(path: str, pressure: float, where: str, case: Any) -> None:
     """Reject a mean pressure that is a large part of the modulus of the softest part.
 
@@ -152,11 +159,10 @@ def check_pressure(path: str, pressure: float, where: str, case: Any) -> None:
     ------
     CaseError
     """
-    moduli = {p: case.located_material(p)[1].young_modulus or math.inf for p in case.geometry.parts}
-    softer = min(moduli, key=moduli.__getitem__)
-    if pressure > SQUEEZED * moduli[softer]:
+    softer, modulus = softest(case)
+    if pressure > SQUEEZED * modulus:
         unit = "geometry.length_unit" if case.geometry.from_file else "the units"
         raise CaseError(
             f"{path}: a mean pressure of {pressure / 1e6:.4g} MPa{where} is "
-            f"{pressure / moduli[softer]:.2g} times the modulus of {softer!r} (check {unit})"
+            f"{pressure / modulus:.2g} times the modulus of {softer!r} (check {unit})"
         )

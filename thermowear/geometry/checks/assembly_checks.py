@@ -15,7 +15,7 @@ from scipy.spatial.transform import Rotation
 from ...case.assembly.holders import pressed
 from ...case.assembly.schema import AssemblyCase
 from ...case.assembly.tables import AssemblyHolderTable
-from ...case.tables.materials import SQUEEZED, check_pressure
+from ...case.tables.materials import SQUEEZED, check_pressure, softest
 from ...errors import CaseError, note
 from ...laws.motions import NOTHING_PRESSED
 from ..mesh.mixed import AnyMesh, block_of, block_with
@@ -236,7 +236,7 @@ def _note_polygons(
     faces, closed = case.contacts[name].between, 0.0
     assert faces is not None  # the case has been checked
     if opposite is not None:
-        modulus = min(_modulus(case, part) for part in case.geometry.parts)
+        modulus = softest(case)[1]
         loads = [_loads(holder) for holder in case.holders.values()] or [(0.0, 0.0)]
         forces, approaches = zip(*loads, strict=True)
         thickness = case.geometry.thickness_factor

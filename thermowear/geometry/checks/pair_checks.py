@@ -95,7 +95,7 @@ def check_pair(mesh: AnyMesh, case: Case) -> None:
         closed = approach - faces.gap
     elif force is not None:
         thickness = case.geometry.thickness_factor
-        closed = depth(force, faces.area, min(_moduli(case).values()), thickness)
+        closed = depth(force, faces.area, softest(case)[1], thickness)
     note_polygons(bodies, case.geometry.contact, closed, "geometry.curved = [{}]")
     if overlap > MUCH * height:
         note(
@@ -132,15 +132,6 @@ def _check_pressure(case: Case, faces: _Faces) -> None:
         return
     note_pressure("load", force / area)
     check_pressure("load", force / area, f", for contact {faces.extent} of the faces,", case)
-
-
-def _moduli(case: Case) -> dict[str, float]:
-    """Young's modulus of each part [Pa]."""
-    return {
-        part: case.material(part).young_modulus or np.inf
-        for body in case.geometry.bodies
-        for part in case.geometry.parts_of(body)
-    }
 
 
 def _compared(mesh: AnyMesh, case: Case) -> _Faces:

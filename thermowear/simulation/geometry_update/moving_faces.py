@@ -174,7 +174,7 @@ def _bent_face(system: System, geometry: WornGeometry, keys: Iterable[FaceKey]) 
 
 def _unworn(system: System, keys: list[FaceKey]) -> WornGeometry:
     """Geometry before its first update."""
-    mesh, paths = on_root(system.comm, lambda: _node_paths(system))
+    mesh, paths = on_root(system.comm, lambda: node_paths(system))
     zeros = np.zeros(3)
     contacts = []
     for index, (pairing, own) in enumerate(zip(system.contacts.each, paths, strict=True)):
@@ -237,7 +237,7 @@ def worst_cell(mesh: AnyMesh) -> float:
     return min(float(scaled_jacobians(block).min()) for block in mesh.blocks)
 
 
-def _node_paths(system: System) -> tuple[AnyMesh, list[list[Paths]]]:
+def node_paths(system: System) -> tuple[AnyMesh, list[list[Paths]]]:
     """Unworn mesh, and the paths of the nodes of both faces of each interface."""
     mesh = system.model.meshes.mesh(system.zone)
     return mesh, [

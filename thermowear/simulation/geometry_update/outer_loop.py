@@ -27,7 +27,7 @@ from ..system.system import System
 from ..time.time_loop import Moment, StepSizes, is_over, is_steady, moments
 from .geometry_update import settled, updated
 from .moving_faces import KEPT, STEPPED, MovingFaces, smoothed_wear, steps_grow
-from .thickness import thicknesses
+from .thickness import Thinnest, Walls, thicknesses
 from .wider_zone import UpdateCounts, meshed_wider, wider_zone
 
 _CHANGE = 5e-3
@@ -36,6 +36,8 @@ _OVER = 0.1
 """Overshoot of the allowed fraction that a step may cause, relative to it."""
 _ROOM = 5.0
 """Upper limit of the allowed fraction, as a multiple of the automatic one."""
+_ALMOST = 0.05
+"""Part of a body's thickness below which one whose mesh cannot follow the wear is worn through."""
 _TILT = 0.1
 """Weight of the element tilt: depth difference of its ends relative to its size."""
 
@@ -97,11 +99,14 @@ class MeshPeriod:
     steady : SteadyState or None
     gap_wear : GapWear or None
         Wear kept in the gap; None if meshes must not be moved.
+    walls : Walls
+        Thickness of the bodies behind the worn faces.
     """
 
     problem: InterfaceProblem
     steady: SteadyState | None
     gap_wear: GapWear | None
+    walls: Walls
 
     @property
     def system(self) -> System:
@@ -111,6 +116,12 @@ class MeshPeriod:
         """Wear kept in the gap at a moment, relative to the dimensions of the bodies."""
         kept = self.gap_wear
         return 0.0 if kept is None or moment is None else kept.fraction(kept.depth(moment.state))
+
+    def thinnest(self, moment: Moment | None) -> Thinnest:
+        """Place where wear has left the smallest part of a body at a moment; every rank calls."""
+        if moment is None:
+            return Thinnest()
+        return self.walls.thinnest(moment.state.by_body(self.system.laws))
 
 
 class OuterLoop:
@@ -164,7 +175,8 @@ class OuterLoop:
 
     def _period(self, problem: InterfaceProblem) -> MeshPeriod:
         kept = GapWear(problem.system) if self._follows else None
-        return MeshPeriod(problem, self._principle(problem.system), kept)
+        walls = Walls(problem.system, MovingFaces(problem.system) if kept is None else kept.faces)
+        return MeshPeriod(problem, self._principle(problem.system), kept, walls)
 
     def restart_data(self) -> tuple:
         """Worn geometry, zone of the mesh [m], counts for earlier zones, limits of kept wear."""
@@ -184,31 +196,44 @@ class OuterLoop:
         self.now = self._period(interface_problem(system, self._observer.note))
 
     def moments(self, last: Moment | None = None) -> Iterator[Moment]:
-        """Accepted moments, see `time_loop.moments`."""
+        """Accepted moments, see `time_loop.moments`; the last one where a body is worn through."""
         now, settings, fraction = self.now, self._settings, self.now.fraction(last)
-        while True:
+        thin = now.thinnest(last)
+        while not thin.is_through:
             if last is not None and (zone := self._wider(now, last)) is not None:
                 now, last = self._widen(now, last, zone)
                 fraction = now.fraction(last)
             if last is not None and self._is_due(now, fraction, last):
-                now, last = self._update(now, last)
-                fraction = 0.0
+                try:
+                    now, last = self._update(now, last)
+                except ComputationError:
+                    if thin.left > _ALMOST:
+                        raise
+                    break
+                fraction, thin = 0.0, now.thinnest(last)
             for moment in self._naming_zone_limit(
                 moments(now.problem, settings, now.steady, self._sizes, last)
             ):
-                if now.gap_wear is not None:
-                    before, fraction = fraction, now.fraction(moment)
-                    self._look_ahead(fraction, fraction - before, moment.step)
-                    if now.system.worn is not None and is_over(settings, moment):
-                        assert last is not None
-                        now, moment = self._end(now, last, moment)
+                before, thin = thin, now.thinnest(moment)
+                if thin.left < 0.0:  # the wear of the step is deeper than the body
+                    self._sizes.largest, thin = thin.step_to_end(before, moment.step), before
+                    break
+                former, fraction = fraction, now.fraction(moment)
+                self._look_ahead(fraction, fraction - former, moment.step)
+                ahead = thin.step_to_end(before, moment.step)
+                self._sizes.largest = min(self._sizes.largest, ahead)
+                if now.gap_wear is not None and now.system.worn and is_over(settings, moment):
+                    assert last is not None
+                    now, moment = self._end(now, last, moment)
                 self.now = now
                 yield moment
                 last = moment
-                if self._wider(now, last) or self._is_due(now, fraction, last):
+                if thin.is_through or self._wider(now, last) or self._is_due(now, fraction, last):
                     break
             else:
                 return
+        assert last is not None
+        self._observer.note(thin.text(last.time))
 
     def summary(self) -> dict[str, float | int]:
         """Summary entries of the geometry updates; empty without updates."""

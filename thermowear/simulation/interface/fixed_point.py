@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 import numpy as np
@@ -18,6 +18,18 @@ _NEAR = 0.05
 """Relative residual below which iterates are mixed; above it, that may lead to another state."""
 _ITERATIONS = 100
 _LEAST_RISE = 1.0  # K
+_PARTLY = 0.01
+"""Pressure up to which imperfect contact conducts in part, relative to the largest one."""
+_AGREES = 1e-8
+"""Largest residual, relative to its scales, of a state with imperfect contact."""
+_REMEMBERED = 20
+"""Number of iterates mixed there, as each point at the border has a steep response."""
+_PARTLY = 0.01
+"""Pressure up to which imperfect contact conducts in part, relative to the largest one."""
+_AGREES = 1e-8
+"""Residual, relative to the scales, of a state with imperfect contact."""
+_REMEMBERED = 20
+"""Number of iterates mixed there, as each point at the border has a steep response."""
 
 
 Found = TypeVar("Found", bound=Any)
@@ -45,7 +57,8 @@ def self_consistent(
 
     The iteration begins with damping by one half: among several states it converges to the one
     that slow heating would reach, as states unstable under heating repel it. Near the fixed point
-    Anderson mixing takes over.
+    Anderson mixing takes over. If sets of closed points return, none of them is consistent, see
+    `imperfect_contact`.
 
     Parameters
     ----------
@@ -71,20 +84,67 @@ def self_consistent(
         return model.at(time, state.pressure, state.faces, touching, state.worn)
 
     iterate, mixing = start, None
+    sets: list[bytes] = []
     for _ in range(_ITERATIONS):
         conditions = conditions_of(iterate)
         found = respond(conditions)
         if conditions_of(found).same_as(conditions):
             model.require_friction(time, found.pressure, found.faces)
             return conditions, found
-        scale = _scales(found)
-        before = _vector(iterate) / scale
-        residual = _vector(found) / scale - before
+        sets.append((found.pressure > 0).tobytes())
+        if not model.depends_on_state and sets[-1] in sets[:-1]:
+            break  # nothing but the set counts, and it has returned
+        before, residual, scale = _residual(iterate, found)
         if mixing is None and np.abs(residual).max() <= _NEAR:
             mixing = AndersonMixing()
         following = before + _DAMPED * residual if mixing is None else mixing.next(before, residual)
-        iterate = _trial(following * scale, found)
+        iterate = _trial(following * scale, found, found.pressure > 0)
+    if closed is None and sets[-1] != sets[-2]:
+        return imperfect_contact(model, time, found, respond, failure)
     raise ComputationError(failure)
+
+
+def imperfect_contact(
+    model: ConditionModel,
+    time: float,
+    start: Any,
+    respond: Callable[[InterfaceConditions], Found],
+    failure: str,
+) -> tuple[InterfaceConditions, Found]:
+    """Find a state with points that touch without pressure and conduct in part.
+
+    Where points that exchange heat part, and press once they are insulated, no set of closed points
+    is consistent: contact is imperfect there (J.R. Barber, J. Appl. Mech. 45 (1978) 87). The
+    conductance then rises with the pressure up to a hundredth of the largest one.
+
+    Parameters as in `self_consistent`; the states have an attribute `touching`.
+
+    Raises
+    ------
+    ComputationError
+    """
+    partly, iterate, mixing = _PARTLY * float(start.pressure.max()), start, None
+    for _ in range(_ITERATIONS):
+        touching = np.minimum(iterate.pressure / partly, 1.0)
+        conditions = model.at(time, iterate.pressure, iterate.faces, touching, iterate.worn)
+        found = respond(conditions)
+        before, residual, scale = _residual(iterate, found)
+        if np.abs(residual).max() <= _AGREES:
+            model.require_friction(time, found.pressure, found.faces)
+            partial = np.any((touching > 0.0) & (touching < 1.0))
+            return conditions, replace(found, touching=touching if partial else None)
+        if mixing is None and np.abs(residual).max() <= _NEAR:
+            mixing = AndersonMixing(_REMEMBERED)
+        following = before + _DAMPED * residual if mixing is None else mixing.next(before, residual)
+        iterate = _trial(following * scale, found, np.ones(len(touching), dtype=bool))
+    raise ComputationError(failure)
+
+
+def _residual(iterate: Any, found: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Scaled vector of an iterate, that of its response less it, and the scales."""
+    scale = _scales(found)
+    before = _vector(iterate) / scale
+    return before, _vector(found) / scale - before, scale
 
 
 def _vector(state: Any) -> np.ndarray:
@@ -99,10 +159,10 @@ def _scales(found: Any) -> np.ndarray:
     return np.repeat([float(pressures.max()) or 1.0, kelvin], [len(pressures), len(rises)])
 
 
-def _trial(vector: np.ndarray, found: Any) -> Trial:
-    """State of a vector, with the contact set of the last response."""
+def _trial(vector: np.ndarray, found: Any, pressing: np.ndarray) -> Trial:
+    """State of a vector, with pressure at some points (n,) only."""
     count, least = len(found.pressure), 1e-9 * found.pressure.max()
     pressure, *rises = np.split(vector, [count] if found.faces is None else [count, 2 * count])
-    pressing = np.where(found.pressure > 0, np.maximum(pressure, least), 0.0)
+    pressure = np.where(pressing, np.maximum(pressure, least), 0.0)
     faces = None if found.faces is None else ThermalState((rises[0], rises[1]), found.faces.flux)
-    return Trial(pressing, faces, found.worn)
+    return Trial(pressure, faces, found.worn)

@@ -13,7 +13,7 @@ from ..system.system import System
 from .condensed_method import CondensedMethod
 from .contact_solver import ContactSolution, ContactSolver
 from .equilibrium import ContactState
-from .fixed_point import Trial, self_consistent
+from .fixed_point import Trial, imperfect_contact, self_consistent
 from .full_method import FullMethod
 from .growing_edge import GrowingEdge, Note
 from .interface_wear import InterfaceWear
@@ -149,7 +149,8 @@ class InterfaceProblem(WearProblem):
         """
         heat = None if self.heat is None else self.heat.steps.after(before.stored, step, time)
         found, edge, model = guess.contact, before.pointwise, self._condition_model
-        faced = heat is not None and (last or model.depends_on_state or before.stored is not None)
+        iterates = model.depends_on_state or guess.touching is not None
+        faced = heat is not None and (last or iterates or before.stored is not None)
 
         def respond(conditions: InterfaceConditions) -> InterfaceState:
             nonlocal found
@@ -160,8 +161,10 @@ class InterfaceProblem(WearProblem):
             worn, removed = plain or self._wear.after(before, rates, p)
             return InterfaceState(worn, found, before.peak, faces, None, edge, removed)
 
-        if model.depends_on_state:
-            closed = guess.pressure > 0
+        if guess.touching is not None and before.stored is None:
+            conditions, state = imperfect_contact(model, time, guess, respond, _STEP)
+        elif model.depends_on_state:
+            closed = guess.exchanging
             conditions, state = self_consistent(model, time, guess, respond, _STEP, closed)
         else:
             conditions = self.conditions(guess, time)
@@ -182,7 +185,7 @@ class InterfaceProblem(WearProblem):
 
     def conditions(self, state: InterfaceState, time: float) -> InterfaceConditions:
         """Interface conditions in a state at a time [s]; constant ones are kept."""
-        model, closed = self._condition_model, state.pressure > 0
+        model, closed = self._condition_model, state.exchanging
         kept, key = self._last_conditions, closed.tobytes()
         if kept is not None and kept[0] == key and model.constant:
             return kept[1]

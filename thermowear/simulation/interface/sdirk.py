@@ -38,6 +38,9 @@ class InterfaceState:
         Points at the edge of the wear with pointwise contact, see `contact.wear.wear_edge`.
     removed : ndarray or None, shape (n_wearing, n_interfaces)
         Volume worn off according to the rates at the contacts [m³]; of several bodies.
+    touching : ndarray or None, shape (n,)
+        Parts of the area that exchange heat in imperfect contact, see `fixed_point`; None if each
+        point that presses exchanges it wholly.
     """
 
     worn: np.ndarray
@@ -47,6 +50,12 @@ class InterfaceState:
     stored: StoredHeat | None = None
     pointwise: np.ndarray | None = None
     removed: np.ndarray | None = None
+    touching: np.ndarray | None = None
+
+    @property
+    def exchanging(self) -> np.ndarray:
+        """Points that exchange heat by contact, wholly or in part, shape (n,)."""
+        return self.pressure > 0 if self.touching is None else self.touching
 
     @property
     def pressure(self) -> np.ndarray:

@@ -135,8 +135,8 @@ class ConditionModel:
         pressure : ndarray, shape (n,) [Pa]
         faces : ThermalState or None
             Surface temperatures; None: the ambient temperature.
-        closed : ndarray of bool, shape (n,)
-            Points that exchange heat by contact.
+        closed : ndarray, shape (n,)
+            Points that exchange heat by contact, wholly or in part: from 0 to 1.
         depth : ndarray, shape (n_wearing, n), optional
             Wear depths of the wearing bodies, by default 0 [m].
         """
@@ -240,11 +240,25 @@ class ConditionModel:
         return [interface.conductance_law(parts, materials) for (interface, _), parts in each]
 
     def _conductance(self, at: LocalState, touching: np.ndarray) -> np.ndarray:
-        """Conductance of touching points and of the gap at the others, shape (n,) [W/(m² K)]."""
-        result = np.zeros(len(touching))
-        if self._system.thermal is None:
+        """Conductance of touching points and of the gap at the others, shape (n,) [W/(m² K)].
+
+        In between it is that of a part of the area, perfect contact included.
+        """
+        result, system = np.zeros(len(touching)), self._system
+        if system.thermal is None:
             return result
         for (interface, points), law in zip(self._interfaces, self._conductance_laws, strict=True):
             closed = np.inf if law is None else law.value(_of_points(at, points))
-            result[points] = np.where(touching[points], closed, interface.gap_conductance)
+            part, open_ = touching[points].astype(float), interface.gap_conductance
+            some = (part > 0.0) & (part < 1.0)
+            inside = np.where(np.isinf(closed), self._conducted / np.where(some, 1 - part, 1), closed)
+            partly = open_ + part * (inside - open_)
+            result[points] = np.where(some, partly, np.where(part > 0.0, closed, open_))
         return result
+
+    @cached_property
+    def _conducted(self) -> float:
+        """Conductance of the size of that of the bodies behind a point [W/(m² K)]."""
+        materials = self._system.model.materials.values()
+        largest = max(one.conductivity or 0.0 for one in materials)
+        return largest / max(pairing.extent for pairing in self._system.contacts.each)

@@ -1,5 +1,7 @@
 """Signorini's conditions under given loads."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,9 +12,12 @@ from thermowear.contact.solvers.lemke import lemke
 from thermowear.contact.solvers.signorini import (
     NoEquilibrium,
     SignoriniSolution,
+    _pressing,
     _pressing_by_lemke,
     _Problem,
     _verified,
+    _with_active,
+    active_set,
     solve_contact,
 )
 
@@ -180,3 +185,18 @@ def test_lemke_with_friction_in_the_section(seed):
     active = _pressing_by_lemke(_Problem(compliance, gap, modes, load, forces))
     pressing = solution.coefficients > 1e-9 * solution.coefficients.max()
     assert np.array_equal(active, pressing)
+
+
+@pytest.mark.parametrize("first", range(8))
+def test_active_sets_that_return_do_not_end_the_search(first):
+    """requirement: the solution of a P-matrix on which Newton's method cycles.
+
+    I. Ben Gharbia and J.C. Gilbert, Math. Program. 134 (2012) 349: 1 on the diagonal, a > 1 beside
+    it, cyclic; each of three equal coefficients is then 1 / (1 + a).
+    """
+    matrix, empty = np.eye(3) + 2.0 * np.eye(3)[[2, 0, 1]], np.zeros((3, 0))
+    problem = _Problem(matrix, -np.ones(3), empty, np.zeros(0), empty)
+    start = np.array([first & 1, first & 2, first & 4]) > 0
+    found = active_set(start, partial(_with_active, problem), partial(_pressing, problem))
+    assert found is not None
+    assert found.coefficients == pytest.approx(np.full(3, 1 / 3))

@@ -99,3 +99,23 @@ def test_heat_that_is_spread_needs_rows_of_elements():
     (line,) = faults({"heat.advection": "spread"}, FLAT)
     assert line.startswith("heat.advection: ")
     assert '"resolved"' in line
+
+
+def test_hot_unworn_faces_touch_imperfectly_at_the_border():
+    """requirement: where no set of closed points is consistent, points conduct in part.
+
+    From the fluxes and temperatures of both faces: the conductance is the given one at all points
+    that press, none where they are open, and in between with hardly any pressure.
+    """
+    found = run(FLAT, {"mesh.elements": 2, "analysis": {"type": "initial"}})
+    i, most = found.interface, found.interface.pressure.max()
+    made = 0.2 * SPEED * np.hypot(i.x, i.y) * i.pressure
+    assert i.heat_flux_1 + i.heat_flux_2 == pytest.approx(made, abs=1e-7 * made.max())
+    apart = i.temperature_2 - i.temperature_1
+    conductance = (i.heat_flux_1 - made / 2) / np.where(apart == 0.0, 1.0, apart)
+    partly = (conductance > 1e-3 * 5e4) & (conductance < 0.999 * 5e4)
+    assert 0 < partly.sum() < len(partly) / 4
+    assert i.pressure[partly].max() < 0.03 * most
+    assert conductance[i.pressure > 0.03 * most] == pytest.approx(5e4, rel=1e-6)
+    assert found.summary["normal_force_N"] == pytest.approx(FORCE)
+    assert found.summary["heat_balance_relative_error"] < 1e-9

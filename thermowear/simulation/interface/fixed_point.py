@@ -18,18 +18,13 @@ _NEAR = 0.05
 """Relative residual below which iterates are mixed; above it, that may lead to another state."""
 _ITERATIONS = 100
 _LEAST_RISE = 1.0  # K
-_PARTLY = 0.01
-"""Pressure up to which imperfect contact conducts in part, relative to the largest one."""
+_PARTLY, _STEEP = 0.03, 0.3
+"""Pressure up to which imperfect contact conducts in part, relative to the largest one, and damping
+of its iteration, as the conductance is steep there."""
 _AGREES = 1e-8
 """Largest residual, relative to its scales, of a state with imperfect contact."""
 _REMEMBERED = 20
-"""Number of iterates mixed there, as each point at the border has a steep response."""
-_PARTLY = 0.01
-"""Pressure up to which imperfect contact conducts in part, relative to the largest one."""
-_AGREES = 1e-8
-"""Residual, relative to the scales, of a state with imperfect contact."""
-_REMEMBERED = 20
-"""Number of iterates mixed there, as each point at the border has a steep response."""
+"""Number of iterates mixed there; several points may be at the border."""
 
 
 Found = TypeVar("Found", bound=Any)
@@ -115,7 +110,7 @@ def imperfect_contact(
 
     Where points that exchange heat part, and press once they are insulated, no set of closed points
     is consistent: contact is imperfect there (J.R. Barber, J. Appl. Mech. 45 (1978) 87). The
-    conductance then rises with the pressure up to a hundredth of the largest one.
+    conductance then rises with the pressure up to 3 % of the largest one.
 
     Parameters as in `self_consistent`; the states have an attribute `touching`.
 
@@ -123,19 +118,22 @@ def imperfect_contact(
     ------
     ComputationError
     """
-    partly, iterate, mixing = _PARTLY * float(start.pressure.max()), start, None
+    partly, iterate = _PARTLY * float(start.pressure.max()), start
+    mixing = AndersonMixing(_REMEMBERED)
     for _ in range(_ITERATIONS):
         touching = np.minimum(iterate.pressure / partly, 1.0)
         conditions = model.at(time, iterate.pressure, iterate.faces, touching, iterate.worn)
         found = respond(conditions)
+        if iterate.faces is None:
+            iterate = Trial(iterate.pressure, found.faces, iterate.worn)
         before, residual, scale = _residual(iterate, found)
         if np.abs(residual).max() <= _AGREES:
             model.require_friction(time, found.pressure, found.faces)
             partial = np.any((touching > 0.0) & (touching < 1.0))
             return conditions, replace(found, touching=touching if partial else None)
-        if mixing is None and np.abs(residual).max() <= _NEAR:
-            mixing = AndersonMixing(_REMEMBERED)
-        following = before + _DAMPED * residual if mixing is None else mixing.next(before, residual)
+        steep = np.ones(len(before))
+        steep[: len(touching)][touching < 1.0] = _STEEP
+        following = mixing.next(before, steep * residual)
         iterate = _trial(following * scale, found, np.ones(len(touching), dtype=bool))
     raise ComputationError(failure)
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...errors import ComputationError
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat, friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
@@ -25,6 +26,11 @@ from .steady_limit import SteadyLimit, steady_limit
 _UNWORN = (
     "contact: the iteration for the contact set and the state-dependent properties did not "
     "converge; give the contact a (smaller) heat.conductance, or reduce the speed"
+)
+_WORN_IN = (
+    "; these are the unworn faces in the steady temperatures of their friction heat: worn ones may "
+    "have a steady state, so begin with its shape (geometry.initial_shape), or compute the "
+    "temperatures in time (heat.transient = true)"
 )
 _STEP = "contact: the iteration for the state-dependent properties of a step did not converge"
 
@@ -55,7 +61,12 @@ class InterfaceProblem(WearProblem):
 
     def unworn(self) -> InterfaceState:
         """Contact of the unworn faces with the steady temperatures of its own friction heat."""
-        return self._in_steady_heat(self._unworn, 0.0)
+        try:
+            return self._in_steady_heat(self._unworn, 0.0)
+        except ComputationError as reason:
+            if self.heat is None or not self._wear.laws:
+                raise
+            raise ComputationError(f"{reason}{_WORN_IN}") from None
 
     def _in_steady_heat(
         self, worn: np.ndarray, time: float, pointwise: np.ndarray | None = None
@@ -149,8 +160,7 @@ class InterfaceProblem(WearProblem):
         """
         heat = None if self.heat is None else self.heat.steps.after(before.stored, step, time)
         found, edge, model = guess.contact, before.pointwise, self._condition_model
-        iterates = model.depends_on_state or guess.touching is not None
-        faced = heat is not None and (last or iterates or before.stored is not None)
+        faced = heat is not None and (last or model.depends_on_state or before.stored is not None)
 
         def respond(conditions: InterfaceConditions) -> InterfaceState:
             nonlocal found
@@ -162,6 +172,7 @@ class InterfaceProblem(WearProblem):
             return InterfaceState(worn, found, before.peak, faces, None, edge, removed)
 
         if guess.touching is not None and before.stored is None:
+            faced = True
             conditions, state = imperfect_contact(model, time, guess, respond, _STEP)
         elif model.depends_on_state:
             closed = guess.exchanging

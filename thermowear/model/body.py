@@ -34,6 +34,8 @@ class Material:
         Specific heat capacity, for transient temperatures and advection [J/(kg K)].
     hardness : float or None
         Hardness of the softer surface layer, for a pressure-dependent contact conductance [Pa].
+    yield_strength : float or None
+        Yield strength; a note says where the von Mises stress passes it, as bodies are elastic [Pa].
     expansion_factor : Table1D or None
         Temperature-dependent factor of the expansion [-, by K]: the thermal strain is ``expansion
         factor(T) (T - ambient)``.
@@ -50,6 +52,7 @@ class Material:
     density: float | None = None
     specific_heat: float | None = None
     hardness: float | None = None
+    yield_strength: float | None = None
     expansion_factor: Table1D | None = None
     conductivity_factor: Table1D | None = None
     label: str = field(default="material", compare=False)

@@ -36,6 +36,7 @@ class Properties(Section):
     density: units.Density | None = None
     specific_heat: units.SpecificHeat | None = None
     hardness: units.Pressure | None = None
+    yield_strength: units.Pressure | None = None
     conductivity_factor: TemperatureTable | None = None
     expansion_factor: ExpansionTable | None = None
 

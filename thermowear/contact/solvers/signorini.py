@@ -24,9 +24,11 @@ from .lemke import with_motion
 _TOLERANCE = 1e-9
 _MAX_SETS = 1000
 """Largest number of active sets tried; a few tens suffice unless the compliance is singular."""
-_MAX_PIVOTS, _BLOCKS = 100, 10
-"""Largest number of sets tried after one has returned, and of changes of several coefficients at
-once after which the number of wrong ones must have decreased."""
+_MAX_PIVOTS, _WORK = 300, 1e11
+"""Largest number of sets tried after one has returned; about the number of products that they may
+cost, though 30 are tried."""
+_BLOCKS = 10
+"""Number of changes of several coefficients at once after which fewer must be wrong."""
 Solution = TypeVar("Solution")
 
 
@@ -152,7 +154,8 @@ def active_set(
     """
     tried: set[bytes] = set()
     fewest, blocks, pivots = len(active) + 1, _BLOCKS, 0
-    while len(tried) < _MAX_SETS and pivots < _MAX_PIVOTS:
+    most = int(np.clip(_WORK / max(len(active), 1) ** 3, 30, _MAX_PIVOTS))
+    while len(tried) < _MAX_SETS and pivots < most:
         solution = solve(active)
         if solution is None:
             return None

@@ -43,6 +43,7 @@ from .checks import (
     singular_pressure,
     too_hot,
 )
+from .limits import beyond_elasticity
 from .positioning import prepare
 from .stability import hot_state, stability
 from .static import initial, steady
@@ -117,6 +118,8 @@ def solve(
         result = _estimated(analysis, end, result, observer)
     with system.phases("fields"):
         fields = sample(end)
+        for note in beyond_elasticity(end):
+            observer.note(note)
     return end, replace(balanced(result), fields=fields)
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from mpi4py import MPI
+
 from ...case import AnyCase
+from ...errors import note
 from ...results import Result
 from ...timer import Phases
 from ..analyses import run as analyses
@@ -18,6 +21,13 @@ def run(
     phases: Phases | None = None,
     saved: Saved | None = None,
 ) -> Result:
-    """Compute a case; see `simulation.analyses.run`. Every rank calls."""
+    """Compute a case; see `simulation.analyses.run`. Every rank calls.
+
+    A run that stops early returns its results so far with a warning.
+    """
     case = with_accurate_mesh(case, comm, observer, phases)
-    return analyses.run(model_of(case), analysis_of(case), comm, observer, phases, saved)
+    result = analyses.run(model_of(case), analysis_of(case), comm, observer, phases, saved)
+    if result.stopped is not None and (comm or MPI.COMM_WORLD).rank == 0:
+        reason = str(result.stopped) or type(result.stopped).__name__
+        note(f"the run has stopped early; its results end there: {reason}")
+    return result

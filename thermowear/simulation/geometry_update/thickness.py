@@ -8,15 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...contact.wear.worn_face import directions_between
+from ...contact.wear.worn_face import directions_between, nodes_of
 from ...geometry.checks.mesh_checks import length
 from ...geometry.mesh.mixed import AnyMesh, block_of
 from ...geometry.mesh.nodes import boundary, shape_functions
-from ...geometry.moving.moved import cells_of
+from ...geometry.moving.moved import cells_of, nodes_at
 from ...parallel import on_root
 from ..results.cell_grids import GRIDS
 from ..system.system import System
-from .moving_faces import FaceKey, MovingFaces, movable_body, node_paths, parts_behind
+from .moving_faces import FaceKey, MovingFaces, node_paths, parts_behind
 
 _THIN = 0.1
 """Part of the unworn thickness below which the remaining one does not count less."""
@@ -177,10 +177,25 @@ class Walls:
         return found
 
 
+def thickness_at(system: System, key: FaceKey, point: int) -> float:
+    """Thickness of a body along the normal at a point of one of its faces [m]. Every rank calls."""
+    side = system.contacts.each[key[0]].sides[key[1]]
+    facet, t = side.facet[point : point + 1], side.t[point : point + 1]
+    start, inward = side.face.points(facet, t), -side.face.normals(facet, t)
+
+    def cast() -> float:
+        worn = system.worn
+        mesh = system.model.meshes.mesh(system.zone) if worn is None else worn.mesh
+        return float(_lengths(_behind(system, mesh, key), start, inward)[0])
+
+    return on_root(system.comm, cast)
+
+
 def _behind(system: System, mesh: AnyMesh, key: FaceKey) -> np.ndarray:
     """Straight pieces of the boundary of a body without one of its faces, (n, gdim, gdim) [m]."""
     parts = parts_behind(system, key)
-    block, own = block_of(mesh, *parts), movable_body(system, mesh, key).face
+    block, face = block_of(mesh, *parts), system.contacts.each[key[0]].sides[key[1]].face
+    own = nodes_at(block, parts, nodes_of(face))
     facets = boundary(block.cell_type, block.order, cells_of(block, parts))
     facets = block.points[facets[~np.isin(facets, own).all(axis=1)]]
     kind, fine = block.facet_type, 1 if block.order == 1 else _FINE

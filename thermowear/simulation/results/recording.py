@@ -17,6 +17,7 @@ from ...compat import evaluate
 from ...contact.full.full_system import resolved_pressure
 from ...contact.wear.implicit_step import WearRates
 from ...laws.motions import RigidMotion, spatial
+from ...laws.principle.least_worn import least_worn
 from ...results import (
     AnyFields,
     BodyFields,
@@ -109,8 +110,27 @@ def snapshot(
     bodies = body_state(system, contact)
     open_by = system.contacts.gap + worn.sum(axis=0)
     gap = open_by + system.softness * contact.pressure + bodies.opening - system.closed_by(motions)
-    shape = np.concatenate([open_by[own].max() - open_by[own] for own in system.contacts.ranges])
+    shape = _shape(system, open_by, contact.pressure > 0.0)
     return record(system, contact, motions, bodies, gap, shape, worn, rates)
+
+
+def _shape(system: System, open_by: np.ndarray, pressing: np.ndarray) -> np.ndarray:
+    """Height of the unloaded faces above their lowest points, shape (n,) [m].
+
+    As in the steady state, the free motions of the holders are those at which the faces conform
+    with the least wear: a drum worn to one side has the shape of one that was made for it.
+
+    Parameters
+    ----------
+    system : System
+    open_by : ndarray, shape (n,)
+        Gap of the unloaded worn faces where they were drawn [m].
+    pressing : ndarray of bool, shape (n,)
+    """
+    modes = system.holder.modes
+    if modes.shape[1] and np.linalg.matrix_rank(modes[pressing]) == modes.shape[1]:
+        open_by = open_by + modes @ least_worn(modes, -open_by, system.weights, pressing)
+    return np.concatenate([open_by[own].max() - open_by[own] for own in system.contacts.ranges])
 
 
 def snapshot_at(problem: InterfaceProblem, state: InterfaceState, time: float) -> Snapshot:
@@ -213,9 +233,8 @@ def profile(end: Snapshot) -> Profile:
     system, interface = end.system, end.interface
     normals = spatial(system.contacts.normals)
     along, shape = along_load(system), np.empty(len(interface.s))
-    open_by = system.contacts.gap + interface.wear_1 + interface.wear_2
     for own in system.contacts.ranges:
-        height = interface.shape[own].max() - interface.shape[own] + open_by[own].min()
+        height = interface.shape[own].max() - interface.shape[own] + system.contacts.gap[own].min()
         height = height / along[own]
         shape[own] = np.fmax.reduce(height) - height
     rate = interface.wear_rate_1 + interface.wear_rate_2
@@ -248,19 +267,14 @@ def sample(snapshot: Snapshot) -> AnyFields | None:
 
     Every rank calls; ranks other than 0 return None. Cells are in the order of the mesh file.
     """
-    system, state = snapshot.system, snapshot.bodies
-    elastic, thermal, heated = system.elastic, system.thermal, state.temperatures
+    system, heated = snapshot.system, snapshot.bodies.temperatures
+    elastic, thermal = system.elastic, system.thermal
     n = divisions(system.bodies, max(system.model.discretisation.degree, 2))
     u = elastic.spaces.functions(snapshot.displacement, "u")
-    du = elastic.spaces.functions(state.displacement, "u")
-    parts = zip(elastic.each, u, du, strict=True)
-    wanted = [[shown, _von_mises(body.stress(d))] for body, shown, d in parts]
+    wanted = [list(pair) for pair in zip(u, von_mises(snapshot), strict=True)]
     if heated is not None and thermal is not None:
-        spaces = thermal.conduction.spaces
-        straining = straining_rises(spaces, heated.rise, system.bodies, thermal.expansions)
-        rises = spaces.functions(heated.rise, "rise")
-        hot = zip(elastic.each, u, du, straining, rises, strict=True)
-        wanted = [[shown, _von_mises(b.stress(d, T)), rise] for b, shown, d, T, rise in hot]
+        rises = thermal.conduction.spaces.functions(heated.rise, "rise")
+        wanted = [[*fields, rise] for fields, rise in zip(wanted, rises, strict=True)]
     found = system.bodies.in_file_order(
         [
             (
@@ -278,6 +292,19 @@ def sample(snapshot: Snapshot) -> AnyFields | None:
         for number, columns in zip(sorted(kinds), found, strict=True)
     ]
     return blocks[0] if len(blocks) == 1 else MixedFields(tuple(blocks))
+
+
+def von_mises(snapshot: Snapshot) -> list:
+    """Expression of the von Mises stress of each body [Pa]; every rank calls."""
+    system, state = snapshot.system, snapshot.bodies
+    elastic, thermal, heated = system.elastic, system.thermal, state.temperatures
+    du = elastic.spaces.functions(state.displacement, "u")
+    if heated is None or thermal is None:
+        return [_von_mises(body.stress(d)) for body, d in zip(elastic.each, du, strict=True)]
+    spaces = thermal.conduction.spaces
+    straining = straining_rises(spaces, heated.rise, system.bodies, thermal.expansions)
+    hot = zip(elastic.each, du, straining, strict=True)
+    return [_von_mises(body.stress(d, T)) for body, d, T in hot]
 
 
 def _fields(

@@ -6,8 +6,6 @@ from tests.case.starter import HERTZ, changed, tables
 from tests.simulation.geometry_update.test_thickness import STRIP, Notes
 from thermowear import load, run
 
-MESH = {"mesh.elements": 12}
-
 
 def told(case, *overrides):
     notes = Notes()
@@ -27,19 +25,20 @@ def test_the_block_under_a_cylinder_yields_at_the_pressure_of_the_closed_form(pa
         assert found[0].startswith("bodies.cylinder.yield_strength: the von Mises stress reaches")
 
 
-@pytest.mark.parametrize(("modulus", "strained", "deep"), [(500, 0, 0), (330, 2, 0), (60, 2, 2)])
+@pytest.mark.parametrize(
+    ("modulus", "strained", "deep"), [(1500, False, False), (300, True, False), (60, True, True)]
+)
 def test_strains_count_but_for_the_singular_edges(modulus, strained, deep):
     """requirement: p = 10 MPa in plane strain strains by 2 (1 + ν)/3 sqrt(1 - ν + ν²) p / E.
 
-    That is 0.77 p / E, 2 % at E = 385 MPa, although the corners of the punch are singular. Its
-    faces approach each other by 0.91 p H / E for each body of height H.
+    That is 0.77 p / E, 0.5, 2.6 and 13 %; singular corners do not count, where any mesh finds more.
+    Faces approach each other by 0.91 p H / E for each body of height H.
     """
     case = STRIP | {"analysis": {"type": "initial"}, "geometry": STRIP["geometry"]}
     bodies = {"punch": {"young_modulus": f"{modulus} MPa", "poisson_ratio": 0.3}}
     notes = told(case | {"bodies": bodies | {"strip": {"like": "punch"}}})
-    assert sum("is strained by" in note for note in notes) >= strained > 0 or not strained
-    assert any("is strained by" in note for note in notes) is (strained > 0)
-    assert any("of the thickness of" in note for note in notes) is (deep > 0)
+    assert any("is strained by" in note for note in notes) is strained
+    assert any("of the thickness of" in note for note in notes) is deep
 
 
 def test_a_clamped_hot_surface_is_named():

@@ -13,7 +13,7 @@ import ufl
 from ...bulk.body_mesh import BodyMesh
 from ...geometry.checks.mesh_checks import length
 from ..geometry_update.thickness import thickness_at
-from ..results.cell_grids import GRIDS
+from ..results.cell_grids import GRIDS, divisions
 from ..results.recording import Snapshot, sampled, von_mises
 from ..system.system import System
 
@@ -65,7 +65,8 @@ def _approaches(end: Snapshot) -> list[str]:
 def _stresses(end: Snapshot) -> list[str]:
     """Notes on large strains, on yielding, and on the clamped surfaces of hot bodies."""
     system = end.system
-    small, table = _small(end), system.comm.gather(_cells(end), root=0)
+    small = _small(end)
+    table = system.comm.gather(_highest(_points(end), small), root=0)
     notes: list[str] = []
     if table is not None:
         notes = _judged(end, small, *(np.concatenate(column) for column in zip(*table, strict=True)))
@@ -81,7 +82,7 @@ def _judged(
     part: np.ndarray,
     clamp: np.ndarray,
 ) -> list[str]:
-    """Notes from stresses, sizes, middles, parts and clamped surfaces of all cells (n_cells,)."""
+    """Notes from the columns of `_points`."""
     model, notes = end.system.model, []
     surfaces = [name for body in model.bodies for name in body.fixed]
     parts = {name: one for body in model.bodies for name, one in body.materials.items()}
@@ -143,24 +144,37 @@ def _small(end: Snapshot) -> float:
     return _EXCEEDED * min(one for one in sizes if one > 0.0) ** system.bodies.dim
 
 
-def _cells(end: Snapshot) -> tuple[np.ndarray, ...]:
-    """Stress, size, middle, part and clamped surface (-1 without) of each cell of this rank."""
+def _points(end: Snapshot) -> tuple[np.ndarray, ...]:
+    """Stress, share of the size, place, part and clamped surface (-1: none) at points of cells."""
     system, columns = end.system, []
     surfaces = [name for body in system.model.bodies for name in body.fixed]
+    n = divisions(system.bodies, max(system.model.discretisation.degree, 2))
     for body, stress in zip(system.bodies.each, von_mises(end), strict=True):
-        middle = GRIDS[body.cell_type](1)[0].mean(axis=0, keepdims=True)
+        grid = GRIDS[body.cell_type](n)[0]
         size = ufl.as_vector([abs(ufl.JacobianDeterminant(body.mesh))])
-        points, values, sizes = sampled(body.mesh, middle, [stress, size])
+        points, values, sizes = sampled(body.mesh, grid, [stress, size])
+        of_cells = body.parts_of_cells(np.arange(body.n_cells)), _clamps(system, body, surfaces)
         columns.append(
             (
-                values[:, 0, 0],
-                _SIZES[body.cell_type] * sizes[:, 0, 0],
-                points[:, 0],
-                body.parts_of_cells(np.arange(body.n_cells)),
-                _clamps(system, body, surfaces),
+                values.ravel(),
+                _SIZES[body.cell_type] / len(grid) * sizes.ravel(),
+                points.reshape(-1, points.shape[2]),
+                *(np.repeat(one, len(grid)) for one in of_cells),
             )
         )
     return tuple(np.concatenate(column) for column in zip(*columns, strict=True))
+
+
+def _highest(points: tuple[np.ndarray, ...], small: float) -> tuple[np.ndarray, ...]:
+    """Points of the highest stresses of each part, which take up a size at least."""
+    stress, size, _, part, _ = points
+    kept = [np.empty(0, dtype=int)]
+    for number in np.unique(part):
+        own = np.flatnonzero(part == number)
+        order = own[np.argsort(-stress[own], kind="stable")]
+        kept.append(order[: int(np.searchsorted(np.cumsum(size[order]), small)) + 1])
+    chosen = np.concatenate(kept)
+    return tuple(column[chosen] for column in points)
 
 
 def _clamps(system: System, body: BodyMesh, surfaces: list[str]) -> np.ndarray:

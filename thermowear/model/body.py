@@ -35,7 +35,7 @@ class Material:
     hardness : float or None
         Hardness of the softer surface layer, for a pressure-dependent contact conductance [Pa].
     yield_strength : float or None
-        Yield strength; a note says where the von Mises stress passes it, as bodies are elastic [Pa].
+        Yield strength [Pa]; bodies are elastic, a note says where the von Mises stress passes it.
     expansion_factor : Table1D or None
         Temperature-dependent factor of the expansion [-, by K]: the thermal strain is ``expansion
         factor(T) (T - ambient)``.

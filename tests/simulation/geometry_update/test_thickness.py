@@ -63,7 +63,7 @@ def test_a_guided_punch_is_worn_through_when_its_height_is_used_up(update):
 
 
 def test_a_tilting_punch_in_space_is_worn_through_at_its_deepest_edge():
-    """requirement: the steady pressure under a load off the middle by e is p_m (1 + 12 e x / b²)."""
+    """requirement: the steady pressure of a load off the middle by e is p_m (1 + 12 e x / b²)."""
     tables = PUNCH | {
         "wear": {"punch": {"coefficient": "1e-3 1/MPa", "per": "pressure"}, "update": "never"},
         "contact": {"friction": 0.0},

@@ -69,7 +69,8 @@ def _stresses(end: Snapshot) -> list[str]:
     table = system.comm.gather(_highest(_points(end), small), root=0)
     notes: list[str] = []
     if table is not None:
-        notes = _judged(end, small, *(np.concatenate(column) for column in zip(*table, strict=True)))
+        columns = zip(*table, strict=True)
+        notes = _judged(end, small, *(np.concatenate(column) for column in columns))
     return system.comm.bcast(notes)
 
 

@@ -96,7 +96,9 @@ class Thinnest:
 
     def text(self, time: float) -> str:
         """Note that the body is worn through at a time [s]."""
-        at = ", ".join(f"{name} = {value:.4g}" for name, value in zip("xyz", self.place))
+        at = ", ".join(
+            f"{name} = {value:.4g}" for name, value in zip("xyz", self.place, strict=False)
+        )
         return (
             f"wear: {self.body} is worn through at t = {time:.6g} s, at {at} m: of its thickness "
             f"of {length(self.thickness)} there, {max(self.left, 0.0):.1%} is left; the run ends"
@@ -213,7 +215,8 @@ def _behind(system: System, mesh: AnyMesh, key: FaceKey) -> np.ndarray:
 def _lengths(pieces: np.ndarray, starts: np.ndarray, ways: np.ndarray) -> np.ndarray:
     """Lengths of rays inside a body, up to straight pieces of its boundary, shape (n,) [m]."""
     corner, edges = pieces[:, 0], pieces[:, 1:] - pieces[:, :1]
-    normals = np.cross(*edges.swapaxes(0, 1)) if edges.shape[1] == 2 else edges[:, 0, ::-1] * [1, -1]
+    in_space = edges.shape[1] == 2
+    normals = np.cross(edges[:, 0], edges[:, 1]) if in_space else edges[:, 0, ::-1] * [1, -1]
     sizes = np.linalg.norm(normals, axis=1)
     solid = sizes > 0.0
     corner, edges, normals = corner[solid], edges[solid], normals[solid] / sizes[solid, None]

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...errors import ComputationError
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
+from ...errors import ComputationError
 from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat, friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System

@@ -251,7 +251,8 @@ class ConditionModel:
             closed = np.inf if law is None else law.value(_of_points(at, points))
             part, open_ = touching[points].astype(float), interface.gap_conductance
             some = (part > 0.0) & (part < 1.0)
-            inside = np.where(np.isinf(closed), self._conducted / np.where(some, 1 - part, 1), closed)
+            perfect = self._conducted / np.where(some, 1 - part, 1.0)
+            inside = np.where(np.isinf(closed), perfect, closed)
             partly = open_ + part * (inside - open_)
             result[points] = np.where(some, partly, np.where(part > 0.0, closed, open_))
         return result

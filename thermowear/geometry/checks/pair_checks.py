@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...case.tables.materials import SQUEEZED, check_pressure
+from ...case.tables.materials import SQUEEZED, check_pressure, softest
 from ...errors import CaseError, note
 from ..mesh.mixed import AnyMesh, block_with
 from ..mesh.nodes import shape_functions

@@ -7,7 +7,12 @@ import numpy as np
 import pytest
 
 from thermowear.contact.friction.frictional_contact import unloaded
-from thermowear.contact.friction.slip_wear import SlipWear, WornProfile, WornProfiles
+from thermowear.contact.friction.slip_wear import (
+    SlipWear,
+    WornProfile,
+    WornProfiles,
+    slid_along,
+)
 from thermowear.contact.friction.stick_slip import follow
 from thermowear.contact.friction.stick_slip_state import Status
 from thermowear.laws import PowerWear
@@ -72,9 +77,23 @@ def test_what_sticks_does_not_wear(partial):
     stuck, slips = (status == Status.STICK).all(axis=0), (status == Status.SLIP).any(axis=0)
     depth = states[-1].worn.sum(axis=0)
     assert stuck.sum() > 10
-    assert np.all(depth[stuck][1:-1] == 0.0)
-    assert np.all(depth[stuck] < 1e-2 * depth.max())
+    assert np.all(depth[stuck] == 0.0)
     assert np.all(depth[slips] > 0.0)
+
+
+def test_only_slip_slides_the_profiles():
+    """requirement: nothing by the deflection of the bodies; beyond it the slip of the middle."""
+    x, contact = half_plane(LINE, 60)
+    middle, count = np.abs(x).argmin(), [len(x)]
+    partial = pushed(0.0, 0.6 * LINE.limit)
+    *_, sticks = follow(contact, LINE.friction, partial, 2, unloaded(contact, 2))
+    assert abs(sticks.motion[1]) > 0.01 * (x[1] - x[0])
+    assert not slid_along(contact, sticks, count).any()
+    start, way = sticks.motion[1], 50 * abs(sticks.motion[1])
+    *_, slides = follow(contact, LINE.friction, moved(start + way), 4, sticks)
+    (slid,) = slid_along(contact, slides, count)
+    assert slid == close(slides.slip[middle, 0] / (x[1] - x[0]), rel=2e-2)
+    assert 0.9 * way < slid < way
 
 
 def test_without_jumps_it_is_mindlins_energy():

@@ -126,6 +126,11 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
         from_key("pressure_error_estimate_relative", "estimated mean error of the pressure"),
         from_key("max_pressure_error_estimate_relative", "estimated error of the largest pressure"),
         from_key("shape_error_estimate_relative", "estimated error of the shape"),
+        from_key(
+            "wear_volume_error_estimate_relative",
+            "estimated error of the worn volume",
+            meaning="of fretting in partial slip, by the position of the stick edge",
+        ),
         from_key("temperature_error_estimate_relative", "estimated error of the temperature"),
         from_key("error_estimate_missing", "reason for the missing error estimate"),
         from_key("coarser_discretisation"),

@@ -10,7 +10,8 @@ wear. In slip zones the shear is ``mu λ``, coefficient by coefficient: for ``a 
 volume is exactly ``κ/mu`` times the dissipated energy.
 
 Coefficients refer to the common face, with the share of each body (see `common_face`). The worn
-profiles slide along it: at a slip s, ``W1(x - s_2 s)`` and ``W2(x + s_1 s)`` lie at x. Profiles are
+profiles slide along it: at a slip s, ``W1(x - s_2 s)`` and ``W2(x + s_1 s)`` lie at x, with that of
+`slid_along`. Profiles are
 interpolated linearly between the functions by a matrix L (in space: see `worn_surface`); worn depth
 is transferred back to ω by its adjoint, which conserves volume.
 """
@@ -19,7 +20,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Protocol, TypeAlias
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -29,7 +30,11 @@ from ..operators.pressure import function_ranges
 from ..search.contacts import Contacts
 from ..search.pairing import Pairing
 from ..wear.track import hat_functions
+from .stick_slip_state import StickSlipState
 from .worn_surface import worn_surface
+
+if TYPE_CHECKING:
+    from .frictional_contact import FrictionalContact
 
 
 @dataclass(frozen=True)
@@ -65,6 +70,10 @@ class WornProfile:
 class SlidingProfile(Protocol):
     """Worn profile of a body at one interface, `WornProfile` or `worn_surface.WornSurface`."""
 
+    @property
+    def areas(self) -> np.ndarray:
+        """Areas of the basis functions, shape (m,) [m²]."""
+
     def interpolation(self, slip: Any) -> np.ndarray:
         """Matrix L: coefficients at the contact from those of the profile at a slip, (m, m)."""
 
@@ -83,6 +92,11 @@ class WornProfiles:
     """
 
     each: tuple[SlidingProfile, ...]
+
+    @property
+    def counts(self) -> list[int]:
+        """Number of coefficients of the contact at each interface."""
+        return [len(profile.areas) for profile in self.each]
 
     def interpolation(self, travel: np.ndarray) -> np.ndarray:
         """Matrix L for the slips of the interfaces, see `FrictionalContact.travel`, (m, m)."""
@@ -115,6 +129,11 @@ class ProfilesAtPoints:
     basis: np.ndarray
     areas: np.ndarray
 
+    @property
+    def counts(self) -> list[int]:
+        """Number of coefficients of the contact at its only interface."""
+        return [len(self.areas)]
+
     @cached_property
     def _means(self) -> np.ndarray:
         """Weighted means with the functions Ψ of depths at the points, shape (m_Ψ, m)."""
@@ -130,7 +149,42 @@ class ProfilesAtPoints:
         return self.profiles.wear_transfer(travel) @ self._means
 
 
+_NOISE = 1e-6
+"""Relative slip that is rounding noise."""
+
 AnyProfiles: TypeAlias = WornProfiles | ProfilesAtPoints
+
+
+def slid_along(contact: FrictionalContact, state: StickSlipState, counts: list[int]) -> np.ndarray:
+    """Slip at each interface as that of rigid bodies, in the form of `FrictionalContact.travel`.
+
+    Holders move by more: the deflection of the bodies does not slide their profiles. The motions of
+    the holders are fitted to the slip of the half of the pressure that slips least, so that nothing
+    slides where that half sticks.
+
+    Parameters
+    ----------
+    contact : FrictionalContact
+    state : StickSlipState
+    counts : list of int
+        Number of coefficients at each interface.
+    """
+    m, found = len(contact.areas), np.zeros(contact.travel.shape[:-1])
+    drawn = -contact.modes[m:].reshape(contact.directions, m, -1) / contact.areas[:, None]
+    slips = state.slip / contact.areas[:, None]
+    sizes = np.linalg.norm(slips, axis=1)
+    carried = state.pressure * contact.areas
+    for number, end in enumerate(np.cumsum(counts)):
+        own = np.arange(end - counts[number], end)
+        order = own[np.argsort(sizes[own], kind="stable")]
+        share = np.cumsum(carried[order])
+        least = order[(share - carried[order] < 0.5 * share[-1]) & (carried[order] > 0.0)]
+        if sizes[least].max(initial=0.0) > _NOISE * sizes[own].max():
+            roots = np.sqrt(carried[least])
+            rows = (drawn[:, least] * roots[:, None]).reshape(-1, drawn.shape[-1])
+            moved = np.linalg.lstsq(rows, (slips[least].T * roots).ravel(), rcond=_NOISE)[0]
+            found[number] = contact.travel[number] @ moved
+    return found
 
 
 def worn_profiles(contacts: Contacts, weighted: np.ndarray, side: int) -> WornProfiles:
@@ -216,6 +270,11 @@ class SlipWear:
         state = LocalState(pressure, speed, mu=self.friction)
         values = [time * of_law(state) for of_law in functions]
         return np.reshape(values, (-1, len(pressure)))
+
+    def slid(self, contact: FrictionalContact, state: StickSlipState) -> np.ndarray:
+        """Slip of the first bodies along the faces, as of rigid bodies, see `slid_along`."""
+        counts = self.profiles[0].counts if self.profiles else [len(contact.areas)]
+        return slid_along(contact, state, counts)
 
     def halved(self) -> SlipWear:
         """Wear of half the increment."""

@@ -18,6 +18,7 @@ from ...model.analyses import (
     ReciprocatingAnalysis,
 )
 from ...results import InterfaceFields
+from ..accuracy.error_estimate import WORTH_A_WARNING
 from ..geometry_update.outer_loop import GapWear
 from ..geometry_update.wider_zone import reaches_open_end
 from ..results.recording import Snapshot
@@ -260,6 +261,18 @@ def changed_by_updates(summary: Mapping[str, Any]) -> str | None:
         f"wear.update: pressure or temperatures changed by up to {100 * change:.2g} % as meshes "
         "were moved to the worn faces, whose shape the elements do not follow; wear evens that "
         "out, but the states behind it are less accurate: use finer elements where faces bend"
+    )
+
+
+def stick_edge(summary: Mapping[str, Any]) -> str | None:
+    """Note on a worn volume that depends on where elements place the edge of the stick zone."""
+    error = summary.get("wear_volume_error_estimate_relative") or 0.0
+    if error <= WORTH_A_WARNING:
+        return None
+    return (
+        f"wear: the worn volume is uncertain by about {100 * error:.2g} %, depths, shape and "
+        "largest pressure more: the elements locate the edge of the stick zone to a part of their "
+        "size; use more mesh.elements there"
     )
 
 

@@ -41,6 +41,7 @@ from .checks import (
     require_one_way,
     require_pressed,
     singular_pressure,
+    stick_edge,
     too_hot,
 )
 from .limits import beyond_elasticity
@@ -164,6 +165,7 @@ def analyse(
         inclined_faces(end.system, end.contact.pressure),
         deep_wear(system, analysis, end.interface),
         changed_by_updates(result.summary),
+        stick_edge(result.summary),
         too_hot(result.summary),
     ]
     if result.stopped is None:
@@ -221,6 +223,9 @@ def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Obse
     except (CaseError, ComputationError, LinAlgError) as error:  # the result is valid without it
         missing = {"error_estimate_missing": {"all": str(error)}}
         return replace(result, summary=result.summary | missing)
+    edge = result.summary.get("wear_volume_error_estimate_relative")
+    if edge is not None and estimates.errors["shape"] is not None:
+        estimates.errors["shape"] = max(estimates.errors["shape"], edge)
     for note in estimates.notes():
         observer.note(note)
     return replace(result, summary=result.summary | estimates.summary())

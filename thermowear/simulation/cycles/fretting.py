@@ -120,6 +120,9 @@ class FrettingHistory(AnalysisHistory[Increment]):
             "dissipated_energy_J": last.dissipated,
             "wear_volume_per_cycle_1_m3": per_cycle[0],
             "wear_volume_per_cycle_2_m3": per_cycle[1],
+            "wear_volume_error_estimate_relative": self._state(self.last).edge_error(
+                np.array([each.state.status for each in self._cycle])
+            ),
         }
 
     def _of_parts(self, last: LoadRow) -> dict:
@@ -145,7 +148,8 @@ class FrettingHistory(AnalysisHistory[Increment]):
     def _slid_along(self, increment: Increment) -> np.ndarray:
         """Gap change of the worn profiles by the slip of the first bodies, coefficients [m]."""
         worn, profiles = increment.state.worn, self._path.profiles
-        moved, still = self._path.travel(increment.state), 0 * self._path.travel(increment.state)
+        moved = self._path.slid(increment.state)
+        still = 0.0 * moved
         parts = (
             (own.interpolation(moved) - own.interpolation(still)) @ depth
             for own, depth in zip(profiles, worn, strict=True)

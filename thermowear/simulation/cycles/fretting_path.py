@@ -114,9 +114,9 @@ class FrettingPath:
         segment = increment.segment
         return (segment.end - segment.start) / self._settings.increments
 
-    def travel(self, state: StickSlipState) -> np.ndarray:
-        """Displacement of the first bodies along the faces, see `FrictionalContact.travel`."""
-        return self._contact.travel @ state.motion
+    def slid(self, state: StickSlipState) -> np.ndarray:
+        """Slip of the first bodies along the faces, see `slip_wear.slid_along`."""
+        return self._wear(0.0).slid(self._contact, state)
 
     def increments(self, last: Increment | None = None) -> Iterator[Increment]:
         """Increments up to the start of the cycles, then through them.

@@ -6,15 +6,18 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.sparse as sp
 
 from ...contact.friction.stick_slip_state import Status
-from ...contact.operators.pressure import Basis
+from ...contact.operators.pressure import Basis, function_ranges
 from ...contact.operators.tangential import forwards, tangents
 from ...laws.motions import spatial
 from ...results import FrictionInterface
 from ..system.system import System
 from .load_path import Increment
 
+_SCAR = 0.01
+"""Depth of the scar at its rim, by the largest one."""
 _SLIDES = 1 - 1e-6  # fraction of the friction limit from which a point slips
 
 
@@ -139,6 +142,47 @@ class FrettingState:
             slip_y=sy,
             slip_z=sz,
         )
+
+    def edge_error(self, through_cycle: np.ndarray) -> float | None:
+        """Error of the worn volume by the position of the stick edge, relative to the volume.
+
+        The edge is located to half a coefficient. One more or less that sticks changes the
+        approach, and with it all depths of the scar, by about its own depth. Where the pressure is
+        smooth across the edge, mean slip and mean pressure of a coefficient give its wear; where it
+        ends there, slip and pressure exclude each other, and coefficients across the edge wear
+        until they carry nothing. The drop of the pressure is the part that counts.
+
+        Parameters
+        ----------
+        through_cycle : ndarray of int, shape (n_increments, m)
+            `Status` of the coefficients in the last cycle.
+
+        Returns
+        -------
+        float or None
+            None without wear, and where tractions are those of points.
+        """
+        lost = self.depths.sum(axis=0)
+        total = float(self.system.weights @ lost)
+        worn = self.increment.state.worn
+        if total == 0.0 or worn.shape[1] != through_cycle.shape[1]:
+            return None
+        overlap = sp.csr_array(self.system.basis)
+        near = overlap.T @ overlap
+        stuck = (through_cycle == Status.STICK).all(axis=0)
+        depths, pressure = worn.sum(axis=0), self.increment.state.pressure
+        edge = (near @ stuck.astype(float) > 0.0) & ~stuck & (depths > 0.0)
+        inner = (near @ edge.astype(float) > 0.0) & stuck
+        areas, error = overlap.T @ self.system.weights, 0.0
+        for own in function_ranges(self.system.contacts, self.system.basis):
+            if not edge[own].any():
+                continue
+            across, within = ((areas * each)[own] for each in (edge, inner))
+            depth = across @ depths[own] / across.sum()
+            mean, highest = (w @ pressure[own] / w.sum() for w in (across, within))
+            scar = areas[own][depths[own] > _SCAR * depths[own].max()].sum()
+            error += max(1.0 - mean / highest, 0.0) * depth * scar / 2
+        return error / total
 
     def _shown(self, components: np.ndarray) -> np.ndarray:
         """Component along +x of a plane model, magnitude in space, shape (n,)."""

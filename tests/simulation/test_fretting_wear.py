@@ -195,6 +195,36 @@ def test_adaptive_jumps_where_the_middle_sticks(sticking):
     )
 
 
+def test_the_end_of_partial_slip_and_its_estimate():
+    """requirement: pressure only where it sticks, and a volume as far from the closed form of
+    half-planes as the estimate says; without a stick zone nothing is uncertain.
+
+    On the stick zone, ``c² = a² (1 - Q/μP)`` as in the first cycle, the pressure is that of the
+    unworn cylinder and a punch of the force Q/μ; where wear ends, faces just touch beyond it.
+    """
+    push, radius, modulus = 28.8e3, 6e-3, 2e11 / (2 * (1 - 0.3**2))  # per length of 1 mm
+    history = {"time": ["0 s", "1 s", "3 s", "5 s"]}
+    history["tangential_force"] = ["0 N", "28.8 N", "-28.8 N", "28.8 N"]
+    strong = {"coefficient": "1e-6 1/MPa", "per": "pressure"}
+    changes = {"load.history": history, "wear.cylinder": strong, "wear.block": strong}
+    settings = "mesh.elements=48", "mesh.grading=1.0", "mesh.degree=2", "analysis.increments=3"
+    changes |= {"analysis.output_times": [], "geometry.zone": "0.12 mm"}
+    result = solved(FRETTING, changes, *settings, "wear.cycles=8000", "analysis.jump=1000")
+    c2 = 4 * 1e3 * FORCE * radius / (np.pi * modulus) * (1 - push / (FRICTION * 1e3 * FORCE))
+    x = np.sqrt(c2) * np.linspace(1.0, 2.0, 20001)
+    far = np.arccosh(x / np.sqrt(c2))
+    depth = 2 * push / (np.pi * FRICTION * modulus) * far
+    depth -= (x * np.sqrt(x**2 - c2) - c2 * far) / (2 * radius)
+    known = 2e-3 * np.trapezoid(np.maximum(depth, 0.0), x)
+    summary, i = result.summary, result.interface
+    volume = summary["wear_volume_1_m3"] + summary["wear_volume_2_m3"]
+    error = summary["wear_volume_error_estimate_relative"]
+    assert np.all(i.pressure[np.abs(i.x) > 1.05 * np.sqrt(c2)] < 0.02 * i.pressure.max())
+    assert known < volume
+    assert (volume - known) / volume < 3 * error
+    assert summary["shape_error_estimate_relative"] >= error > 0.1
+
+
 def test_the_gap_is_closed_where_it_presses():
     """requirement: the gap of the interface has body 1's profile where body 1 has slid to."""
     changes = moved(**{"analysis.output_times": ["301 s"]})

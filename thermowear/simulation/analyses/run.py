@@ -224,8 +224,10 @@ def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Obse
         missing = {"error_estimate_missing": {"all": str(error)}}
         return replace(result, summary=result.summary | missing)
     edge = result.summary.get("wear_volume_error_estimate_relative")
-    if edge is not None and estimates.errors["shape"] is not None:
-        estimates.errors["shape"] = max(estimates.errors["shape"], edge)
+    for quantity in ("shape", "max_pressure"):  # singular inside the edge of the stick zone
+        error = estimates.errors[quantity]
+        if edge is not None and error is not None:
+            estimates.errors[quantity] = max(error, edge)
     for note in estimates.notes():
         observer.note(note)
     return replace(result, summary=result.summary | estimates.summary())

@@ -182,7 +182,7 @@ class FrettingState:
             mean, highest = (w @ pressure[own] / w.sum() for w in (across, within))
             scar = areas[own][depths[own] > _SCAR * depths[own].max()].sum()
             error += max(1.0 - mean / highest, 0.0) * depth * scar / 2
-        return error / total
+        return float(error) / total
 
     def _shown(self, components: np.ndarray) -> np.ndarray:
         """Component along +x of a plane model, magnitude in space, shape (n,)."""

@@ -7,12 +7,7 @@ import numpy as np
 import pytest
 
 from thermowear.contact.friction.frictional_contact import unloaded
-from thermowear.contact.friction.slip_wear import (
-    SlipWear,
-    WornProfile,
-    WornProfiles,
-    slid_along,
-)
+from thermowear.contact.friction.slip_wear import SlipWear, WornProfile, WornProfiles
 from thermowear.contact.friction.stick_slip import follow
 from thermowear.contact.friction.stick_slip_state import Status
 from thermowear.laws import PowerWear
@@ -88,10 +83,10 @@ def test_only_slip_slides_the_profiles():
     partial = pushed(0.0, 0.6 * LINE.limit)
     *_, sticks = follow(contact, LINE.friction, partial, 2, unloaded(contact, 2))
     assert abs(sticks.motion[1]) > 0.01 * (x[1] - x[0])
-    assert not slid_along(contact, sticks, count).any()
+    assert not contact.slid(sticks, count).any()
     start, way = sticks.motion[1], 50 * abs(sticks.motion[1])
     *_, slides = follow(contact, LINE.friction, moved(start + way), 4, sticks)
-    (slid,) = slid_along(contact, slides, count)
+    (slid,) = contact.slid(slides, count)
     assert slid == close(slides.slip[middle, 0] / (x[1] - x[0]), rel=2e-2)
     assert 0.9 * way < slid < way
 

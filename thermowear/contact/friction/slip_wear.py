@@ -11,7 +11,7 @@ volume is exactly ``κ/mu`` times the dissipated energy.
 
 Coefficients refer to the common face, with the share of each body (see `common_face`). The worn
 profiles slide along it: at a slip s, ``W1(x - s_2 s)`` and ``W2(x + s_1 s)`` lie at x, with that of
-`slid_along`. Profiles are
+`FrictionalContact.slid`. Profiles are
 interpolated linearly between the functions by a matrix L (in space: see `worn_surface`); worn depth
 is transferred back to ω by its adjoint, which conserves volume.
 """
@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -30,11 +30,7 @@ from ..operators.pressure import function_ranges
 from ..search.contacts import Contacts
 from ..search.pairing import Pairing
 from ..wear.track import hat_functions
-from .stick_slip_state import StickSlipState
 from .worn_surface import worn_surface
-
-if TYPE_CHECKING:
-    from .frictional_contact import FrictionalContact
 
 
 @dataclass(frozen=True)
@@ -149,42 +145,7 @@ class ProfilesAtPoints:
         return self.profiles.wear_transfer(travel) @ self._means
 
 
-_NOISE = 1e-6
-"""Relative slip that is rounding noise."""
-
 AnyProfiles: TypeAlias = WornProfiles | ProfilesAtPoints
-
-
-def slid_along(contact: FrictionalContact, state: StickSlipState, counts: list[int]) -> np.ndarray:
-    """Slip at each interface as that of rigid bodies, in the form of `FrictionalContact.travel`.
-
-    Holders move by more: the deflection of the bodies does not slide their profiles. The motions of
-    the holders are fitted to the slip of the half of the pressure that slips least, so that nothing
-    slides where that half sticks.
-
-    Parameters
-    ----------
-    contact : FrictionalContact
-    state : StickSlipState
-    counts : list of int
-        Number of coefficients at each interface.
-    """
-    m, found = len(contact.areas), np.zeros(contact.travel.shape[:-1])
-    drawn = -contact.modes[m:].reshape(contact.directions, m, -1) / contact.areas[:, None]
-    slips = state.slip / contact.areas[:, None]
-    sizes = np.linalg.norm(slips, axis=1)
-    carried = state.pressure * contact.areas
-    for number, end in enumerate(np.cumsum(counts)):
-        own = np.arange(end - counts[number], end)
-        order = own[np.argsort(sizes[own], kind="stable")]
-        share = np.cumsum(carried[order])
-        least = order[(share - carried[order] < 0.5 * share[-1]) & (carried[order] > 0.0)]
-        if sizes[least].max(initial=0.0) > _NOISE * sizes[own].max():
-            roots = np.sqrt(carried[least])
-            rows = (drawn[:, least] * roots[:, None]).reshape(-1, drawn.shape[-1])
-            moved = np.linalg.lstsq(rows, (slips[least].T * roots).ravel(), rcond=_NOISE)[0]
-            found[number] = contact.travel[number] @ moved
-    return found
 
 
 def worn_profiles(contacts: Contacts, weighted: np.ndarray, side: int) -> WornProfiles:
@@ -271,10 +232,10 @@ class SlipWear:
         values = [time * of_law(state) for of_law in functions]
         return np.reshape(values, (-1, len(pressure)))
 
-    def slid(self, contact: FrictionalContact, state: StickSlipState) -> np.ndarray:
-        """Slip of the first bodies along the faces, as of rigid bodies, see `slid_along`."""
-        counts = self.profiles[0].counts if self.profiles else [len(contact.areas)]
-        return slid_along(contact, state, counts)
+    @property
+    def counts(self) -> list[int]:
+        """Number of coefficients of the contact at each interface; empty without wear."""
+        return self.profiles[0].counts if self.profiles else []
 
     def halved(self) -> SlipWear:
         """Wear of half the increment."""

@@ -60,7 +60,8 @@ def advance(
     if len(given) != len(state.motion):
         raise ValueError(f"loads: the holders have {len(state.motion)} motions, not {len(given)}")
     friction = np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure))
-    slid = np.zeros(contact.travel.shape[:-1]) if wear is None else wear.slid(contact, state)
+    counts = [] if wear is None else wear.counts
+    slid = contact.slid(state, counts)
 
     def seen() -> np.ndarray:
         own = state.worn if wear is None else wear.depths_at_contact(state.worn, slid)
@@ -75,7 +76,7 @@ def advance(
     after = contact.increment(friction, state, state, loads, worn, None)
     if wear is None:
         return after
-    before, slid = slid, wear.slid(contact, after)
+    before, slid = slid, contact.slid(after, counts)
     if state.worn.any() and np.any(slid != before):  # worn profiles at the end of the increment
         worn = seen()
         after = contact.increment(friction, state, after, loads, worn, None)

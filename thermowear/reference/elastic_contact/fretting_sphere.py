@@ -37,7 +37,7 @@ from .mindlin_sphere import MindlinSphere
 _REACH = 1.25
 """Radius of the grid by that of the unworn contact."""
 _TOLERANCE = 1e-6
-"""Of the depths, by the deflection at the stick radius. Noise of the pressure wears, too."""
+"""Error of depths by the deflection at the stick radius: noise of the pressure wears, too."""
 
 
 @dataclass(frozen=True)

@@ -115,8 +115,8 @@ class FrettingPath:
         return (segment.end - segment.start) / self._settings.increments
 
     def slid(self, state: StickSlipState) -> np.ndarray:
-        """Slip of the first bodies along the faces, see `slip_wear.slid_along`."""
-        return self._wear(0.0).slid(self._contact, state)
+        """Slip of the first bodies along the faces, see `FrictionalContact.slid`."""
+        return self._contact.slid(state, self._wear(0.0).counts)
 
     def increments(self, last: Increment | None = None) -> Iterator[Increment]:
         """Increments up to the start of the cycles, then through them.

@@ -16,7 +16,7 @@ _DELAY = 0.01
 _PATIENCE = 5.0
 """Time in which a recorded request must be served, and a signal must be heard [s]."""
 BEFORE_FORCED_END: list[Callable[[], object]] = []
-"""What is called before the process ends by force."""
+"""Functions without arguments that are called before the process ends by force."""
 _HEARD = threading.Event()
 """Set by the handler of a signal, which runs as soon as the main thread executes Python."""
 

@@ -9,7 +9,7 @@ from dolfinx.fem.petsc import assemble_vector
 from thermowear import load
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.field import as_function
-from thermowear.bulk.heat.advection import Passage
+from thermowear.bulk.heat.passage import Passage
 from thermowear.bulk.spaces import lagrange_spaces
 
 from ..conftest import DEMOS

@@ -9,13 +9,13 @@ import ufl
 from thermowear.bulk import solver_choice
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.compiled import assembled_matrix
-from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.heat_equation import (
     ThermalMaterial,
     conduction,
     surface_heat,
     transferring,
 )
+from thermowear.bulk.heat.passage import Passage
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.multigrid_solver import MultigridSolver

@@ -7,8 +7,8 @@ import pytest
 import scipy.sparse as sp
 from scipy.optimize import brentq
 
-from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction, surface_heat
+from thermowear.bulk.heat.passage import Passage
 from thermowear.bulk.heat.varying import varying_conduction
 from thermowear.bulk.kinematics import Axisymmetric, Spatial
 from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity

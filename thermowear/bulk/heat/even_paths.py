@@ -23,7 +23,7 @@ from ..group_solvers import AnyFactor, factorised
 from ..joints.joined_solver import JoinedSolver
 from ..joints.joint import Joints
 from ..spaces import Spaces
-from .advection import Passage
+from .passage import Passage
 
 _PATH_TOLERANCE = 1e-9
 """Tolerance for identifying paths, relative to the range of their coordinates."""

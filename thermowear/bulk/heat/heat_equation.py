@@ -19,10 +19,11 @@ from ..joints.joint import NO_JOINTS, Joints
 from ..kinematics import Kinematics, section_measure
 from ..solver_choice import SolverChoice
 from ..spaces import Spaces, block_diagonal
-from .advection import Advection, BodyAdvection, Passage, advection
+from .advection import Advection, BodyAdvection, advection
 from .conduction import Conduction
 from .conduction_solver import conduction_solver
 from .even_paths import EvenPaths
+from .passage import Passage
 from .path_solver import closed_paths
 
 

@@ -22,8 +22,8 @@ from ..direct_solver import DirectSolver
 from ..field import owned
 from ..multigrid_solver import RELATIVE_TOLERANCE, MultigridSolver
 from ..spaces import Spaces
-from .advection import Passage
 from .even_paths import EvenPaths
+from .passage import Passage
 
 _FILL = 1
 """Levels of fill of the incomplete factors; 2 halves the iterations, but costs more in all."""

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import dolfinx
 import numpy as np
@@ -20,9 +19,7 @@ import scipy.sparse as sp
 from ...errors import CaseError
 from ..bodies import Bodies
 from ..body_mesh import BodyMesh
-
-if TYPE_CHECKING:
-    from .advection import Passage
+from .passage import Passage
 
 _ROUNDING = 1e-3
 """Inclination to the motion that positions of nodes explain."""

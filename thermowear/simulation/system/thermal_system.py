@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...bulk.bodies import Bodies
-from ...bulk.heat.advection import Passage
 from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.heat_equation import ThermalMaterial, conduction
+from ...bulk.heat.passage import Passage
 from ...bulk.heat.varying import (
     VaryingConduction,
     VaryingExpansion,

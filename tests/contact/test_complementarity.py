@@ -197,6 +197,6 @@ def test_active_sets_that_return_do_not_end_the_search(first):
     matrix, empty = np.eye(3) + 2.0 * np.eye(3)[[2, 0, 1]], np.zeros((3, 0))
     problem = _Problem(matrix, -np.ones(3), empty, np.zeros(0), empty)
     start = np.array([first & 1, first & 2, first & 4]) > 0
-    found = active_set(start, partial(_with_active, problem), partial(_pressing, problem))
+    found = active_set(start, partial(_with_active, problem), partial(_pressing, problem), True)
     assert found is not None
     assert found.coefficients == pytest.approx(np.full(3, 1 / 3))

@@ -15,6 +15,7 @@ from functools import partial
 from typing import TypeVar
 
 import numpy as np
+import scipy.linalg
 from scipy.linalg.lapack import dgetrf, dgetrs
 
 from ...errors import ComputationError
@@ -103,14 +104,29 @@ def solve_contact(
 def _solve(problem: _Problem, start: np.ndarray | None) -> SignoriniSolution:
     """Active-set method from the predicted set and from full contact, then Lemke's method."""
     everywhere = np.ones(len(problem.gap), dtype=bool)
-    for active in (everywhere,) if start is None else (start, everywhere):
-        solution = active_set(active, partial(_with_active, problem), partial(_pressing, problem))
-        if solution is not None:
-            return _verified(problem, solution)
+    starts = (everywhere,) if start is None else (start, everywhere)
+    solve, pressing = partial(_with_active, problem), partial(_pressing, problem)
+    for pivoting in (False, True):
+        if pivoting and not _is_monotone(problem):
+            break  # beyond a critical speed it might end in an unstable state
+        for active in starts:
+            solution = active_set(active, solve, pressing, pivoting)
+            if solution is not None:
+                return _verified(problem, solution)
     solution = _with_active(problem, _pressing_by_lemke(problem))
     if solution is None:
         raise NoEquilibrium("contact: the load cannot be carried by the contact zone")
     return _verified(problem, solution)
+
+
+def _is_monotone(problem: _Problem) -> bool:
+    """Whether the compliance is positive for pressures without resultant."""
+    A, modes = problem.compliance, problem.modes
+    size = np.sqrt(np.abs(np.diagonal(A)))
+    held = modes.shape[1] == 0
+    free = np.eye(len(A)) if held else scipy.linalg.null_space((modes / size[:, None]).T)
+    scaled = free.T @ (A / np.outer(size, size)) @ free
+    return bool(np.linalg.eigvalsh(scaled + scaled.T)[:1].min(initial=1.0) > 0.0)
 
 
 @dataclass(frozen=True)
@@ -137,11 +153,12 @@ def active_set(
     active: np.ndarray,
     solve: Callable[[np.ndarray], Solution | None],
     pressing: Callable[[Solution], np.ndarray],
+    pivoting: bool = False,
 ) -> Solution | None:
     """Primal-dual active set from a first guess; None if it cycles or becomes singular.
 
-    If a set returns, block pivoting goes on with single pivots as long as the number of wrong
-    coefficients does not decrease, which ends for every P-matrix (J.J. Júdice and F.M. Pires,
+    If a set returns, and with `pivoting`, it goes on with single pivots as long as the number of
+    wrong coefficients does not decrease, which ends for every P-matrix (J.J. Júdice and F.M. Pires,
     Comput. Oper. Res. 21 (1994) 587).
 
     Parameters
@@ -151,6 +168,7 @@ def active_set(
         Solution with closed contact at the active coefficients; None if singular.
     pressing : callable
         Next active set of a solution.
+    pivoting : bool, optional
     """
     tried: set[bytes] = set()
     fewest, blocks, pivots = len(active) + 1, _BLOCKS, 0
@@ -166,6 +184,8 @@ def active_set(
         if not pivots and before.tobytes() not in tried:
             tried.add(before.tobytes())
             continue
+        if not pivoting:
+            return None
         fewest, blocks = (len(wrong), _BLOCKS) if len(wrong) < fewest else (fewest, blocks - 1)
         pivots += 1
         if blocks < 0:

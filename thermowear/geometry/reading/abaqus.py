@@ -390,15 +390,17 @@ def _resolved(
             waiting += [] if value in seen else sets[value]
             seen.add(value)
             continue
-        if isinstance(value, tuple):
+        if isinstance(value, np.ndarray):
+            chosen = value
+        else:
             first, last, step = value
             if step < 1:
                 raise ValueError(f"line {line}: {where} has a range with the step {step}")
-            value = known[(known >= first) & (known <= last) & ((known - first) % step == 0)]
-            if not len(value):
+            chosen = known[(known >= first) & (known <= last) & ((known - first) % step == 0)]
+            if not len(chosen):
                 raise ValueError(f"line {line}: {where} has a range without defined {kind}s")
-        found.append(value)
-        lines.append(np.full(len(value), line))
+        found.append(chosen)
+        lines.append(np.full(len(chosen), line))
     numbers = np.concatenate(found)
     missing = ~np.isin(numbers, known)
     if missing.any():

@@ -218,7 +218,9 @@ def paired(
     weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs)
     on_common = on_face + pairs.share[:, None] * pairs.offset
     weights *= np.maximum(kinematics.area_factor(on_common), 0.0)  # rounding on the axis
-    covered = np.bincount(facet, pieces.weight / face_1.measure, minlength=len(face_1.sizes))
+    covered: np.ndarray = np.bincount(
+        facet, pieces.weight / face_1.measure, minlength=len(face_1.sizes)
+    )
     if covered.max() > 1.0 + _MAX_OVERLAP:
         nearest = np.full(len(covered), np.inf)
         np.minimum.at(nearest, facet, np.abs(pairs.gap))

@@ -91,11 +91,14 @@ class FrictionalContact(PressureSpace):
             order = own[np.argsort(sizes[own], kind="stable")]
             share = np.cumsum(carried[order])
             least = order[(share - carried[order] < 0.5 * share[-1]) & (carried[order] > 0.0)]
-            if sizes[least].max(initial=0.0) > _NOISE * sizes[own].max():
-                roots = np.sqrt(carried[least])
-                rows = (drawn[:, least] * roots[:, None]).reshape(-1, drawn.shape[-1])
-                moved = np.linalg.lstsq(rows, (slips[least].T * roots).ravel(), rcond=_NOISE)[0]
-                found[number] = self.travel[number] @ moved
+            travel = self.travel[number]
+            slides = travel.reshape(-1, travel.shape[-1]).any(axis=0)  # not those that press
+            if slides.any() and sizes[least].max(initial=0.0) > _NOISE * sizes[own].max():
+                roots = np.sqrt(carried[least])[:, None]
+                rows = (drawn[:, least][..., slides] * roots).reshape(-1, int(slides.sum()))
+                goal = (slips[least] * roots).T.ravel()
+                moved = np.linalg.lstsq(rows, goal, rcond=_NOISE)[0]
+                found[number] = travel[..., slides] @ moved
         return found
 
     def seen(self, profiles: WornProfiles) -> AnyProfiles:

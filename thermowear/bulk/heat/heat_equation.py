@@ -96,7 +96,9 @@ def conduction(
                 [_outflow(*pair) for pair in zip(blocks, spaces.each, strict=True)],
             ),
             max(block.advection.peclet for block in blocks if block.advection is not None),
-            flows=tuple(block.advection and block.advection.flow for block in blocks),
+            flows=tuple(
+                None if block.advection is None else block.advection.flow for block in blocks
+            ),
         )
         if choice.iterative and moving.stabilised:
             moving = replace(moving, paths=closed_paths(bodies, spaces, passage))

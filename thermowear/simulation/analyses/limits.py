@@ -169,7 +169,7 @@ def _points(end: Snapshot) -> tuple[np.ndarray, ...]:
 def _highest(points: tuple[np.ndarray, ...], small: float) -> tuple[np.ndarray, ...]:
     """Points of the highest stresses of each part, which take up a size at least."""
     stress, size, _, part, _ = points
-    kept = [np.empty(0, dtype=int)]
+    kept: list[np.ndarray] = [np.empty(0, dtype=int)]
     for number in np.unique(part):
         own = np.flatnonzero(part == number)
         order = own[np.argsort(-stress[own], kind="stable")]

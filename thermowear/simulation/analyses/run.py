@@ -221,13 +221,14 @@ def _estimated(analysis: Analysis, end: Snapshot, result: Result, observer: Obse
     try:
         estimates = estimate_errors(analysis, end, result.summary.get("time_s", 0.0))
     except (CaseError, ComputationError, LinAlgError) as error:  # the result is valid without it
+        observer.note(f"no estimate of the discretisation error, because {error}")
         missing = {"error_estimate_missing": {"all": str(error)}}
         return replace(result, summary=result.summary | missing)
     edge = result.summary.get("wear_volume_error_estimate_relative")
     for quantity in ("shape", "max_pressure"):  # singular inside the edge of the stick zone
-        error = estimates.errors[quantity]
-        if edge is not None and error is not None:
-            estimates.errors[quantity] = max(error, edge)
+        known = estimates.errors[quantity]
+        if edge is not None and known is not None:
+            estimates.errors[quantity] = max(known, edge)
     for note in estimates.notes():
         observer.note(note)
     return replace(result, summary=result.summary | estimates.summary())

@@ -14,9 +14,6 @@ from .increment_wear import WearSlope
 from .slip_wear import AnyProfiles, WornProfiles
 from .stick_slip_state import Loads, Status, StickSlipState
 
-_NOISE = 1e-6
-"""Relative slip that is rounding noise."""
-
 
 @dataclass(frozen=True)
 class FrictionalContact(PressureSpace):
@@ -68,38 +65,6 @@ class FrictionalContact(PressureSpace):
         """Split x into λ and τ, the inverse of `stack`."""
         blocks = stacked.reshape(-1, self.basis.shape[1])
         return blocks[0], blocks[1:].T
-
-    def slid(self, state: StickSlipState, counts: list[int]) -> np.ndarray:
-        """Slip at each interface as that of rigid bodies, in the form of `travel`.
-
-        Holders move by more: the deflection of the bodies does not slide their profiles. The
-        motions of the holders are fitted to the slip of the half of the pressure that slips least,
-        so that nothing slides where that half sticks.
-
-        Parameters
-        ----------
-        state : StickSlipState
-        counts : list of int
-            Number of coefficients at each interface; without any nothing has slid.
-        """
-        m, found = len(self.areas), np.zeros(self.travel.shape[:-1])
-        drawn = -self.modes[m:].reshape(self.directions, m, -1) / self.areas[:, None]
-        slips, carried = state.slip / self.areas[:, None], state.pressure * self.areas
-        sizes = np.linalg.norm(slips, axis=1)
-        for number, end in enumerate(np.cumsum(counts, dtype=int)):
-            own = np.arange(end - counts[number], end)
-            order = own[np.argsort(sizes[own], kind="stable")]
-            share = np.cumsum(carried[order])
-            least = order[(share - carried[order] < 0.5 * share[-1]) & (carried[order] > 0.0)]
-            travel = self.travel[number]
-            slides = travel.reshape(-1, travel.shape[-1]).any(axis=0)  # not those that press
-            if slides.any() and sizes[least].max(initial=0.0) > _NOISE * sizes[own].max():
-                roots = np.sqrt(carried[least])[:, None]
-                rows = (drawn[:, least][..., slides] * roots).reshape(-1, int(slides.sum()))
-                goal = (slips[least] * roots).T.ravel()
-                moved = np.linalg.lstsq(rows, goal, rcond=_NOISE)[0]
-                found[number] = travel[..., slides] @ moved
-        return found
 
     def seen(self, profiles: WornProfiles) -> AnyProfiles:
         """Worn profiles in the basis of the contact, by default their own."""

@@ -10,8 +10,7 @@ wear. In slip zones the shear is ``mu λ``, coefficient by coefficient: for ``a 
 volume is exactly ``κ/mu`` times the dissipated energy.
 
 Coefficients refer to the common face, with the share of each body (see `common_face`). The worn
-profiles slide along it: at a slip s, ``W1(x - s_2 s)`` and ``W2(x + s_1 s)`` lie at x, with that of
-`FrictionalContact.slid`. Profiles are
+profiles slide along it: at a slip s, ``W1(x - s_2 s)`` and ``W2(x + s_1 s)`` lie at x. Profiles are
 interpolated linearly between the functions by a matrix L (in space: see `worn_surface`); worn depth
 is transferred back to ω by its adjoint, which conserves volume.
 """
@@ -66,10 +65,6 @@ class WornProfile:
 class SlidingProfile(Protocol):
     """Worn profile of a body at one interface, `WornProfile` or `worn_surface.WornSurface`."""
 
-    @property
-    def areas(self) -> np.ndarray:
-        """Areas of the basis functions, shape (m,) [m²]."""
-
     def interpolation(self, slip: Any) -> np.ndarray:
         """Matrix L: coefficients at the contact from those of the profile at a slip, (m, m)."""
 
@@ -88,11 +83,6 @@ class WornProfiles:
     """
 
     each: tuple[SlidingProfile, ...]
-
-    @property
-    def counts(self) -> list[int]:
-        """Number of coefficients of the contact at each interface."""
-        return [len(profile.areas) for profile in self.each]
 
     def interpolation(self, travel: np.ndarray) -> np.ndarray:
         """Matrix L for the slips of the interfaces, see `FrictionalContact.travel`, (m, m)."""
@@ -124,11 +114,6 @@ class ProfilesAtPoints:
     profiles: WornProfiles
     basis: np.ndarray
     areas: np.ndarray
-
-    @property
-    def counts(self) -> list[int]:
-        """Number of coefficients of the contact at its only interface."""
-        return [len(self.areas)]
 
     @cached_property
     def _means(self) -> np.ndarray:
@@ -231,11 +216,6 @@ class SlipWear:
         state = LocalState(pressure, speed, mu=self.friction)
         values = [time * of_law(state) for of_law in functions]
         return np.reshape(values, (-1, len(pressure)))
-
-    @property
-    def counts(self) -> list[int]:
-        """Number of coefficients of the contact at each interface; empty without wear."""
-        return self.profiles[0].counts if self.profiles else []
 
     def halved(self) -> SlipWear:
         """Wear of half the increment."""

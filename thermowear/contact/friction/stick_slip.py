@@ -60,14 +60,12 @@ def advance(
     if len(given) != len(state.motion):
         raise ValueError(f"loads: the holders have {len(state.motion)} motions, not {len(given)}")
     friction = np.broadcast_to(np.asarray(friction, dtype=float), len(state.pressure))
-    counts = [] if wear is None else wear.counts
-    slid = contact.slid(state, counts)
-
-    def seen() -> np.ndarray:
-        own = state.worn if wear is None else wear.depths_at_contact(state.worn, slid)
-        return own.sum(axis=0) if len(own) else np.zeros(len(friction))
-
-    worn = seen()
+    # motions given at the end, or the current ones if free
+    travel = contact.travel @ np.where(np.isnan(given), state.motion, given)
+    worn = np.zeros(len(friction))
+    if len(state.worn):
+        own = state.worn if wear is None else wear.depths_at_contact(state.worn, travel)
+        worn = own.sum(axis=0)
 
     def solve(lost: np.ndarray, slope: WearSlope, guess: StickSlipState) -> StickSlipState:
         """Solve contact with the worn depths ``lost + slope λ``."""
@@ -76,11 +74,7 @@ def advance(
     after = contact.increment(friction, state, state, loads, worn, None)
     if wear is None:
         return after
-    before, slid = slid, contact.slid(after, counts)
-    if state.worn.any() and np.any(slid != before):  # worn profiles at the end of the increment
-        worn = seen()
-        after = contact.increment(friction, state, after, loads, worn, None)
-    by_slip = IncrementWear(wear, state, contact.areas, slid)
+    by_slip = IncrementWear(wear, state, contact.areas, travel)
     if by_slip.value(after.pressure, after).any():
         after = newton_with_wear(solve, by_slip, after, _WEAR_TOLERANCE, _NOT_CONVERGED)
     depths = by_slip.profiles(after)

@@ -135,8 +135,9 @@ def _small(end: Snapshot) -> float:
         if system.contacts.in_space:
             sizes.append(float(np.sqrt(pairing.weights[pressing].sum())))
         else:
-            factor = system.elastic.kinematics.area_factor(pairing.points)[pressing]
-            sizes.append(float((pairing.weights[pressing] / factor).sum()))
+            factor = system.elastic.kinematics.area_factor(pairing.points)
+            pressing &= factor > 0.0  # on the axis points have no area
+            sizes.append(float((pairing.weights[pressing] / factor[pressing]).sum()))
     for body in system.bodies.each:
         x = body.mesh.geometry.x[:, : system.bodies.dim]
         each = system.comm.allgather((x.min(axis=0), x.max(axis=0)) if len(x) else None)

@@ -148,8 +148,7 @@ class FrettingHistory(AnalysisHistory[Increment]):
     def _slid_along(self, increment: Increment) -> np.ndarray:
         """Gap change of the worn profiles by the slip of the first bodies, coefficients [m]."""
         worn, profiles = increment.state.worn, self._path.profiles
-        moved = self._path.slid(increment.state)
-        still = 0.0 * moved
+        moved, still = self._path.travel(increment.state), 0 * self._path.travel(increment.state)
         parts = (
             (own.interpolation(moved) - own.interpolation(still)) @ depth
             for own, depth in zip(profiles, worn, strict=True)

@@ -114,9 +114,9 @@ class FrettingPath:
         segment = increment.segment
         return (segment.end - segment.start) / self._settings.increments
 
-    def slid(self, state: StickSlipState) -> np.ndarray:
-        """Slip of the first bodies along the faces, see `FrictionalContact.slid`."""
-        return self._contact.slid(state, self._wear(0.0).counts)
+    def travel(self, state: StickSlipState) -> np.ndarray:
+        """Displacement of the first bodies along the faces, see `FrictionalContact.travel`."""
+        return self._contact.travel @ state.motion
 
     def increments(self, last: Increment | None = None) -> Iterator[Increment]:
         """Increments up to the start of the cycles, then through them.

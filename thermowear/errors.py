@@ -104,3 +104,8 @@ def shortened(text: str, most: int) -> str:
     end = most // 3
     left_out = len(text) - most
     return f"{text[: most - end]} … {left_out} characters left out … {text[-end:]}"
+
+
+def percent(part: float) -> str:
+    """Fraction as text, with two digits: 0.086 as "8.6 %", 1.41 as "140 %"."""
+    return f"{float(f'{100 * part:.2g}'):.12g} %"

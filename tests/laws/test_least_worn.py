@@ -70,3 +70,10 @@ def test_least_worn_of_curved_faces(modes, seed):
     assert np.sum(lost < 1e-14) == modes
     if modes == 1:
         assert d == pytest.approx((opening / R[:, 0]).max(), rel=1e-9)
+
+
+def test_a_body_between_two_others():
+    """requirement: where every motion needs material to be added somewhere, the least squares."""
+    R, opening = np.repeat([[1.0], [-1.0]], 3, axis=0), np.repeat([0.2, -0.1], 3)
+    d = least_worn(R, opening + 0.3, np.ones(6), np.ones(6, dtype=bool))
+    assert d == pytest.approx([0.15], abs=1e-12)

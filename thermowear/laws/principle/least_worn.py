@@ -21,7 +21,8 @@ def least_worn(
     The wear depth is ``R d - B u``, non-negative at all points in contact. For a single translation
     of a flat face the highest point is then just unworn. Where many motions wear as little, as
     tilts of a symmetric face, the one of least squares of the depth is taken, which is unique: a
-    symmetric face stays symmetric.
+    symmetric face stays symmetric. Likewise where every motion would need material to be added, as
+    of a body between two others.
 
     Parameters
     ----------
@@ -50,6 +51,10 @@ def least_worn(
             "dual_feasibility_tolerance": _TOLERANCE,
         },
     ).x
+    if found is None:
+        roots = np.sqrt(weights)
+        found = np.linalg.lstsq(R * roots[:, None], gap * roots, rcond=None)[0]
+        return found / stretch * size
     return _fitted(R, gap, weights, found) / stretch * size
 
 

@@ -25,7 +25,7 @@ import numpy as np
 
 from ...contact.search.pairing import PairedFace, pair
 from ...contact.solvers.enriched_pressure import enriched_pressure, linearised_pressure
-from ...errors import CaseError, ComputationError
+from ...errors import CaseError, ComputationError, percent
 from ...lagrange import lattice
 from ...model.analyses import Analysis
 from ...results import InterfaceFields
@@ -88,7 +88,7 @@ class ErrorEstimates:
         notes = []
         above = {q: e for q, e in self.errors.items() if e and e > WORTH_A_WARNING}
         if above:
-            large = ", ".join(f"{_NAMES.get(q, q)} {100 * e:.2g} %" for q, e in above.items())
+            large = ", ".join(f"{_NAMES.get(q, q)} {percent(e)}" for q, e in above.items())
             advice = (
                 "flat facets stand for a curved contact face, and the pressures of their edges do "
                 "not converge with mesh.degree; curve them by geometry.curved, or by cells of "

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...contact.faces.rim import near_chosen, on_edges, rim
 from ...contact.search.pairing import PairedFace
-from ...errors import CaseError, ComputationError
+from ...errors import CaseError, ComputationError, percent
 from ...geometry.checks.mesh_checks import length
 from ...laws.motions import NOTHING_PRESSED
 from ...model.analyses import (
@@ -179,8 +179,8 @@ def singular_pressure(end: Snapshot, analysis: Analysis) -> tuple[dict[str, Any]
             text = (
                 f"the largest pressure{where}, {largest / 1e6:.4g} MPa, is at a sharp edge of one "
                 "body on the face of the other one, where it is singular: it grows with every "
-                f"refinement. The elements at such edges carry {100 * share:.2g} % of the load; "
-                f"the largest pressure off them is {beside / 1e6:.4g} MPa"
+                f"refinement. The elements at such edges carry {percent(share)} of the load"
+                + (f"; the largest pressure off them is {beside / 1e6:.4g} MPa" if beside else "")
             )
     if system.model.is_pair:
         return next(iter(each.values()), {}), text
@@ -258,7 +258,7 @@ def changed_by_updates(summary: Mapping[str, Any]) -> str | None:
     if change <= _CHANGED:
         return None
     return (
-        f"wear.update: pressure or temperatures changed by up to {100 * change:.2g} % as meshes "
+        f"wear.update: pressure or temperatures changed by up to {percent(change)} as meshes "
         "were moved to the worn faces, whose shape the elements do not follow; wear evens that "
         "out, but the states behind it are less accurate: use finer elements where faces bend"
     )
@@ -270,7 +270,7 @@ def stick_edge(summary: Mapping[str, Any]) -> str | None:
     if error <= WORTH_A_WARNING:
         return None
     return (
-        f"wear: the worn volume is uncertain by about {100 * error:.2g} %, depths, shape and "
+        f"wear: the worn volume is uncertain by about {percent(error)}, depths, shape and "
         "largest pressure more: the elements locate the edge of the stick zone to a part of their "
         "size; use more mesh.elements there"
     )

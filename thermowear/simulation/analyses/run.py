@@ -11,7 +11,7 @@ from numpy.linalg import LinAlgError
 
 from ...balances import judged
 from ...bulk.multigrid_solver import MultigridSolver
-from ...errors import CaseError, ComputationError
+from ...errors import CaseError, ComputationError, percent
 from ...model.analyses import (
     Analysis,
     FrettingAnalysis,
@@ -145,7 +145,7 @@ def analyse(
             several, number = len(system.contacts.each) > 1, pairing.carrier + 1
             face = pairing.carrying.face.name if several else f"of body {number}"
             observer.note(
-                f"{100 * pairing.unpaired:.2g} % of the contact face {face} has "
+                f"{percent(pairing.unpaired)} of the contact face {face} has "
                 "nothing opposite and stays out of the contact"
             )
     if isinstance(analysis, StaticAnalysis):

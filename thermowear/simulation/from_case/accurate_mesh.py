@@ -10,7 +10,7 @@ import numpy as np
 
 from ...case import AnyCase
 from ...case.tables.mesh import MeshTable
-from ...errors import CaseError, ComputationError
+from ...errors import CaseError, ComputationError, percent
 from ...results import Result
 from ...timer import Phases
 from ..accuracy.compared_values import Number, WornHeights
@@ -115,7 +115,7 @@ def _found(search: MeshSearch[MeshSize], best: MeshTrial[MeshSize], chosen: set[
     keys = ", ".join(f"mesh.{key} = {getattr(size, key):g}" for key in _KEYS if key in chosen)
     text = (
         f"mesh.accuracy: {keys} after {len(search.trials)} meshes; {best.unknowns} unknowns, "
-        f"estimated error {100 * error:.2g} %"
+        f"estimated error {percent(error)}"
     )
     if search.singular(best):
         text += (

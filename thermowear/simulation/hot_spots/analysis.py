@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import CaseError, ComputationError
+from ...errors import CaseError, ComputationError, percent
 from ...model.analyses import StabilityAnalysis
 from ...model.model import Model
 from ...results import GrowthRow, HotSpotRow, HotSpots, Result
@@ -213,7 +213,7 @@ def _error_estimate(
         )
     elif error > _COARSE:
         observer.note(
-            f"the critical speed of hot spots is uncertain by about {100 * error:.2g} %; refine "
+            f"the critical speed of hot spots is uncertain by about {percent(error)}; refine "
             "the mesh: more elements, a higher degree, or thinner rows at the contact (mesh.skin)"
         )
     return {"first_hot_spots_error_estimate_relative": error}

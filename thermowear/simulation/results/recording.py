@@ -128,7 +128,8 @@ def _shape(system: System, open_by: np.ndarray, pressing: np.ndarray) -> np.ndar
     pressing : ndarray of bool, shape (n,)
     """
     modes = system.holder.modes
-    if modes.shape[1] and np.linalg.matrix_rank(modes[pressing]) == modes.shape[1]:
+    count = modes.shape[1] if pressing.any() else 0
+    if count and np.linalg.matrix_rank(modes[pressing]) == count:
         open_by = open_by + modes @ least_worn(modes, -open_by, system.weights, pressing)
     return np.concatenate([open_by[own].max() - open_by[own] for own in system.contacts.ranges])
 

@@ -131,8 +131,8 @@ def test_exponent_and_coefficient_from_one_load_and_from_two(tmp_path):
     assert two.standard_errors["b"] == pytest.approx(0.01 * np.sqrt(2) / np.log(2), rel=1e-3)
 
 
-def in_any_order(tmp_path, order, backwards):
-    """Calibration of ``V = k p^b t`` by tests at 4, 9 and 4 MPa, by a closed form for runs."""
+def in_any_order(tmp_path, order, backwards, loads=(4, 9, 4), errors=(0.01, -0.02, 0.03)):
+    """Calibration of ``V = k p^b t`` by tests at pressures [MPa], by a closed form for runs."""
     ring = tables()
     ring["wear"]["punch"] |= {"coefficient": "5e-8 1/MPa", "per": "pressure"}
     parameters = {
@@ -140,7 +140,7 @@ def in_any_order(tmp_path, order, backwards):
         "b": {"start": 1.1, "lower": 0.5, "upper": 2.0},
     }
     law = {"wear.punch.coefficient": "{k} 1/MPa^{b}", "wear.punch.pressure_exponent": "{b}"}
-    times, loads, errors = np.array([5.0, 20.0, 50.0]), (4, 9, 4), (0.01, -0.02, 0.03)
+    times = np.array([5.0, 20.0, 50.0])
     observations = {}
     for k in order:
         rows = [times, 3e-7 * loads[k] ** 0.8 * times * (1 + errors[k]), 1e-8 * times]

@@ -10,7 +10,7 @@ import pytest
 
 from thermowear import CaseError
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.kinematics import Axisymmetric
+from thermowear.bulk.kinematics import Axisymmetric, Spatial
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.faces.face import Face, gather_face
 from thermowear.contact.faces.projection import project
@@ -22,6 +22,7 @@ from thermowear.parallel import sum_over_ranks
 
 from ..bulk.fields import interpolated
 from ..conftest import two_blocks
+from .solids import two_solids
 
 COMM = MPI.COMM_WORLD
 
@@ -167,6 +168,24 @@ def test_pressure_basis(columns, growth, degree):
     best = np.linalg.lstsq(basis, r**degree, rcond=None)[0]
     np.testing.assert_allclose(basis @ best, r**degree, rtol=1e-9)
     assert basis.shape[1] == columns[0] * degree + 1
+
+
+@pytest.mark.parametrize("degree", [1, 3])
+@pytest.mark.parametrize("cells", [None, "hexahedron", "tetrahedron"])
+def test_pressure_at_ends_of_facets(cells, degree):
+    """
+    requirement: points at an end of a facet, up to rounding, have no part of the functions that
+    vanish there; else heat passes points whose pressure is rounding.
+    """
+    model = Spatial() if cells else Axisymmetric()
+    bodies = distribute(two_solids(cell_type=cells), COMM) if cells else blocks()
+    pairing = pair(*faces(bodies), model, degree + 3)
+    pieces, known = pairing.pieces, pressure_basis(pairing, degree)
+    for rounding in (-1e-15, 1e-15):
+        moved = replace(pairing, pieces=replace(pieces, t=pieces.t + rounding))
+        found = pressure_basis(moved, degree)
+        assert len(found.nonzero()[0]) == len(known.nonzero()[0])
+        assert abs(found - known).max() < 1e-13
 
 
 @pytest.mark.parametrize("degree", [1, 2, 5, 8])

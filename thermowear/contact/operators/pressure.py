@@ -34,6 +34,8 @@ _LEAST_COVERED = 0.4
 """Fraction of the area of a function, on the facets in contact, that must face the other body."""
 _NEAREST = 8
 """Power of the distance by which shares in farther neighbours fall: nearly the nearest alone."""
+_ROUNDING = 1e-12
+"""Of parameters of points on facets."""
 _ZERO_PRESSURE = 1e-9  # of the largest pressure
 _FIT_FRACTION = 0.8  # fraction of half a zone used to fit its edge
 _DEGREE = 2
@@ -205,7 +207,7 @@ def jumps(pairing: Pairing) -> bool:
 def _on_products(degree: int, t: np.ndarray) -> np.ndarray:
     """Products of Bernstein polynomials of each parameter, shape (n, (degree + 1)**dim)."""
     values = np.ones((len(t), 1))
-    for along in t.T:
+    for along in _at_ends(t).T:
         values = (values[:, :, None] * _bernstein(degree, along)[:, None]).reshape(len(t), -1)
     return values
 
@@ -217,9 +219,19 @@ def _on_triangles(degree: int, t: np.ndarray) -> np.ndarray:
     """
     powers = np.rint(lattice(degree, "triangle") * degree)
     powers = np.column_stack([powers, degree - powers.sum(axis=1)])
-    parts = np.column_stack([t, np.maximum(1.0 - t.sum(axis=1), 0.0)])
+    parts = _at_ends(np.column_stack([t, np.maximum(1.0 - t.sum(axis=1), 0.0)]))
     scale = factorial(degree) / factorial(powers).prod(axis=1)
     return scale * (parts[:, None] ** powers).prod(axis=2)
+
+
+def _at_ends(t: np.ndarray) -> np.ndarray:
+    """Parameters without rounding at the ends of facets.
+
+    Points there have no part of the functions of other facets or edges, and no pressure of theirs,
+    not even of rounding: heat passes the points that press.
+    """
+    whole = np.rint(t)
+    return np.where(np.abs(t - whole) < _ROUNDING, whole, t)
 
 
 def _bernstein(degree: int, t: np.ndarray) -> np.ndarray:

@@ -249,7 +249,8 @@ def random_scene(
     pads : int, optional
         Their number; by default one or two.
     **given : bool
-        Of ``hot`` and ``worn`` and ``sliding``, which are drawn by default, or true.
+        Of ``hot`` and ``tilting`` (pads of plane sections turn freely), which are drawn by default,
+        and of ``worn`` and ``sliding``, by default true.
     """
     rng = np.random.default_rng(seed)
     model = str(rng.choice(models or MODELS))
@@ -279,6 +280,12 @@ def random_scene(
     lines = [np.append(np.concatenate(parts), edges[-1]), *across, np.linspace(-low, 0, 3)]
     plate = Block("plate", grid(*lines), tuple(np.cumsum(counts).tolist()))
     tables = _tables(rng, model, analysis, hot, pads)
+    tilting = bool(rng.random() < 0.4)
+    if given.get("tilting", tilting) and model.startswith("plane"):
+        for block, holder in zip(blocks, tables["holders"].values(), strict=True):
+            x, y = block.nodes[:, -1].mean(axis=0).tolist()
+            holder["free"] = ["z", "rotation"]
+            holder["pivot"] = [("coordinate", x), ("coordinate", y)]
     if not given.get("worn", True):
         del tables["wear"]
     if not given.get("sliding", True):
@@ -314,10 +321,11 @@ def _tables(rng, model: str, analysis: str, hot: bool, pads: int) -> dict[str, A
         motion["across"] = True
     k = 10 ** rng.uniform(-14, -13) * (20 if hot else 1)
     worn = [n for n in both if n != "plate" or rng.random() < 0.3]
-    wear = {n: {"coefficient": ("per pressure", k), "per": "pressure"} for n in worn}
+    per = str(rng.choice(["pressure", "friction-stress"]))
+    wear = {n: {"coefficient": ("per pressure", k), "per": per} for n in worn}
     down = [0.0, 0.0, -1.0] if model == "3d" else [0.0, -1.0]
     found = {
-        "mesh": {"degree": 2},
+        "mesh": {"degree": int(rng.integers(1, 3 if model == "3d" else 4))},
         "bodies": bodies,
         "contact": {"friction": float(rng.uniform(0.05, 0.4))},
         "contacts": {
@@ -348,4 +356,9 @@ def _tables(rng, model: str, analysis: str, hot: bool, pads: int) -> dict[str, A
                 for surface in (*(f"{n}_top" for n in names), "plate_low")
             },
         }
+        if rng.random() < 0.3:
+            del found["heat"]["cooling"]["plate_low"]
+            found["heat"]["temperature"] = {"plate_low": ("temperature", rng.uniform(280, 330))}
+        if analysis == "transient" and rng.random() < 0.5:
+            found["heat"]["transient"] = True
     return found

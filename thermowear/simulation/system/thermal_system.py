@@ -176,14 +176,17 @@ def _shifts(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Heat transfer of both faces to the bath at the points, shape (n,) each [W/(m² K)].
 
-    Conductivity of the body over the size of the face.
+    Conductivity of the body over the size of the face that carries the pressure: by its area, as
+    imperfect contact is divided by it and must not depend on the place or order of the bodies.
     """
     conductivities = _conductivities(model, heat, materials)
+    faces = [pairing.carrying.face for pairing in contacts.each]
+    sizes = [face.sizes.sum() ** (1 / face.dim) for face in faces]
     first, second = (
         contacts.per_point(
             [
-                conductivities[pair[side]] / pairing.extent
-                for pairing, pair in zip(contacts.each, contacts.bodies, strict=True)
+                conductivities[pair[side]] / size
+                for size, pair in zip(sizes, contacts.bodies, strict=True)
             ]
         )
         for side in (0, 1)

@@ -27,7 +27,10 @@ def pulled(key, values):
             [f"contacts.left.friction_history={RAMP}"],
             "contacts.left.friction_history: requires a transient analysis, not steady",
         ),
-        ([UNTIL, f"motions.disk.history={RAMP}"], "under motions.disk.history; give end_time only"),
+        (
+            [UNTIL, f"motions.disk.history={RAMP}"],
+            "under motions.disk.history, where a steady state may be periodic; give end_time only",
+        ),
         ([TIMED, pulled("approach", ["1 um", "2 um"])], f"{PISTON}.history.approach: {ONLY_FORCE}"),
         (
             [TIMED, pulled("tangential_force", ["1 N", "2 N"])],

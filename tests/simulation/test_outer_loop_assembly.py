@@ -14,7 +14,7 @@ from thermowear.case.starters import starter_files, starter_text
 from thermowear.simulation.analyses.run import run
 from thermowear.simulation.from_case.analysis import analysis_of, model_of
 from thermowear.simulation.geometry_update.moving_faces import in_place
-from thermowear.simulation.geometry_update.thickness import thicknesses
+from thermowear.simulation.geometry_update.outer_loop import thicknesses
 from thermowear.verification.cases.assembly.pad_disk_pad import (
     FORCE,
     FRICTION,

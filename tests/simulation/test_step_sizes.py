@@ -8,8 +8,14 @@ import pytest
 
 from thermowear.model.analyses import TransientAnalysis
 from thermowear.simulation.time import time_loop
-from thermowear.simulation.time.given_steps import times_to_hit
-from thermowear.simulation.time.time_loop import AnySize, FewSizes, ends, moments, next_step
+from thermowear.simulation.time.time_loop import (
+    AnySize,
+    FewSizes,
+    ends,
+    moments,
+    next_step,
+    times_to_hit,
+)
 
 
 def walk(sizes, times, wanted, time=0.0, begin=0.0):

@@ -114,7 +114,7 @@ def test_unequal_supports_carry_one_force_and_wear_by_their_laws():
         weight = i["weight_m2"] * along(i, CLEARANCES[name], share)
         assert weight @ i["pressure_Pa"] == pytest.approx(FORCE, rel=1e-6)
         slid = SPEED * TIME
-        for body, key in ((name, "wear_1_m"), ("tube", "wear_2_m")):
+        for body, key in ((name, "wear_2_m"), ("tube", "wear_1_m")):
             volume = weight @ i[key]
             known = COEFFICIENTS[body] * FORCE * slid
             assert volume == pytest.approx(known, rel=1e-6, abs=0.0)

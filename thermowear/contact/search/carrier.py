@@ -44,6 +44,8 @@ def carrying_side(face_1: Face | Surface, face_2: Face | Surface) -> int:
 def ends_within(face: Face | Surface, other: Face | Surface) -> np.ndarray:
     """Edges at the rim of a face beyond which the other one goes on, bool (n_facets, n_edges)."""
     facet, edge = rim_edges(face)
+    if not len(facet):  # closed all round
+        return np.zeros((len(face.nodes), len(edges_of(face.kind))), dtype=bool)
     corners = lattice(1, face.kind).reshape(-1, face.dim)
     middle = corners[edges_of(face.kind)].mean(axis=1)
     beyond = middle + _BEYOND * (middle - corners.mean(axis=0))

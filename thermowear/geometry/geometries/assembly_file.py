@@ -114,7 +114,8 @@ class AssemblyFile(AssemblyGeometry):
                         f'{body} = {{ NAME = "{names[name]}" }}',
                     )
                 owners[name] = body
-        curved_surfaces(self.curved, self.surfaces)
+        if self.curved:
+            curved_surfaces(self.curved, self.surfaces)
 
     @model_serializer(mode="wrap")
     def _by_keys(self, handler) -> dict[str, Any]:

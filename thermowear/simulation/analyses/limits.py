@@ -12,7 +12,7 @@ import ufl
 
 from ...bulk.body_mesh import BodyMesh
 from ...geometry.checks.mesh_checks import length
-from ..geometry_update.thickness import thickness_at
+from ..geometry_update.outer_loop import thickness_at
 from ..results.cell_grids import GRIDS, divisions
 from ..results.recording import Snapshot, sampled, von_mises
 from ..system.system import System

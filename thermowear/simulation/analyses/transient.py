@@ -194,7 +194,9 @@ class TransientHistory(AnalysisHistory[Moment]):
     def _row(self, moment: Moment, slid: float, conditions: InterfaceConditions) -> HistoryRow:
         system, rows = self.loop.now.system, self.table(HistoryRow)
         depths = moment.state.by_body(system.laws)
-        pressure = comparable_pressure(system, moment.state.pressure, depths)
+        pressure = moment.state.pressure
+        if not depths.any():
+            pressure = comparable_pressure(system, pressure, depths)
         force, torque, power = self._friction(moment, conditions)
         in_gap = system.worn_areas * (depths - system.moved)
         volumes = in_gap.sum(axis=1) + system.lost.sum(axis=0)

@@ -5,7 +5,7 @@ import pytest
 
 from tests.simulation.space import PUNCH
 from thermowear import load, run
-from thermowear.simulation.geometry_update import thickness
+from thermowear.simulation.geometry_update import outer_loop
 from thermowear.simulation.runtime.observer import Observer
 
 STRIP = {
@@ -30,7 +30,7 @@ STRIP = {
     "wear": {"punch": {"coefficient": "1e-4 1/MPa", "per": "pressure"}},
     "analysis": {"type": "transient", "end_time": "1 h", "tolerance": 1e-2},
 }
-LEFT = 1 - thickness._NOTHING / 2
+LEFT = 1 - outer_loop._NOTHING / 2
 """Part of the thickness whose loss ends a run, to the tolerance of the event."""
 
 
@@ -124,5 +124,5 @@ def test_rays_end_at_the_far_side_of_a_tilted_body():
     pieces = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)[1:]
     x = np.linspace(0.1, 3.9, 7)
     starts = np.column_stack([x, np.zeros_like(x)])
-    found = thickness._lengths(pieces, starts, np.tile([0.0, 1.0], (7, 1)))
+    found = outer_loop._lengths(pieces, starts, np.tile([0.0, 1.0], (7, 1)))
     assert found == pytest.approx(1 + x / 2)

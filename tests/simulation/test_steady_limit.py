@@ -4,6 +4,7 @@ import numpy as np
 
 import thermowear as tw
 from thermowear.errors import ComputationError
+from thermowear.simulation.geometry_update import outer_loop
 from thermowear.simulation.interface.interface_problem import InterfaceProblem
 
 from ..case.starter import solved
@@ -30,8 +31,12 @@ def test_edges_that_have_left_a_coarse_face():
 
 
 def test_a_limit_that_is_not_the_steady_state(monkeypatch):
-    """requirement: a running-in that stays away from the steady state ends in one line."""
+    """requirement: a running-in that stays away from the steady state ends in one line.
+
+    In a body of any thickness: this one is worn through before.
+    """
     monkeypatch.setattr(InterfaceProblem, "distance", lambda *_: 0.25)
+    monkeypatch.setattr(outer_loop.MeshPeriod, "thinnest", lambda *_: outer_loop.Thinnest())
     coarse = "mesh.degree=3", "mesh.elements=6", "wear.update='never'"
     result = solved("annular-punch-running-in", None, UNTIL, *coarse)
     assert isinstance(result.stopped, ComputationError)

@@ -64,21 +64,25 @@ class FullSolution:
         return self.pressure > 0.0
 
 
-def resolved_pressure(basis: Basis, weights: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+def resolved_pressure(
+    basis: Basis, weights: np.ndarray, pressure: np.ndarray, directions: np.ndarray
+) -> np.ndarray:
     """Pressure without tension in the pressure space nearest to one of single points, (n,) [Pa].
 
-    Of equal force. Without a pressure space, pressures scatter in cells that the edge of contact
-    crosses, and follow what is singular as far as the points do; this is what converges.
+    Of equal resultant force. Without a pressure space, pressures scatter in cells that the edge of
+    contact crosses, and follow what is singular as far as the points do; this is what converges.
 
     Parameters
     ----------
     basis : ndarray or csr_array, shape (n, m)
         Basis Ψ.
     weights, pressure : ndarray, shape (n,)
+    directions : ndarray, shape (n, gdim)
+        Traction per pressure.
     """
     space = PressureSpace(basis, scaled(weights, basis))
-    areas = space.weak(np.ones(len(weights)))[:, None]
-    force = np.array([weights @ pressure])
+    directions = directions[:, np.any(directions != 0.0, axis=0)]
+    areas, force = space.weak(directions), directions.T @ (weights * pressure)
     return basis @ solve_contact(space.mass, -space.weak(pressure), areas, force).coefficients
 
 

@@ -35,7 +35,7 @@ _LEAST_COVERED = 0.4
 _NEAREST = 8
 """Power of the distance by which shares in farther neighbours fall: nearly the nearest alone."""
 _ROUNDING = 1e-12
-"""Of parameters of points on facets."""
+"""Rounding of the parameters of points on facets."""
 _ZERO_PRESSURE = 1e-9  # of the largest pressure
 _FIT_FRACTION = 0.8  # fraction of half a zone used to fit its edge
 _DEGREE = 2

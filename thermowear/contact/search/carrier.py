@@ -28,14 +28,17 @@ _ALIKE = 1e-6
 def carrying_side(face_1: Face | Surface, face_2: Face | Surface) -> int:
     """Side (0 or 1) of the face whose facets carry the contact points.
 
-    That with the longer rim within the other face; of equal ones that with more facets, and that
-    whose mean normal points towards the last negative coordinate.
+    That with the longer rim within the other face; of equal ones that with more facets, the convex
+    one, and that whose mean normal points towards the last negative coordinate.
     """
     lengths = _length_within(face_1, face_2), _length_within(face_2, face_1)
     if abs(lengths[0] - lengths[1]) > _ALIKE * max(lengths):
         return int(lengths[1] > lengths[0])
     if len(face_1.nodes) != len(face_2.nodes):
         return int(len(face_2.nodes) > len(face_1.nodes))
+    bulges = _bulge(face_1), _bulge(face_2)
+    if abs(bulges[0] - bulges[1]) > _ALIKE:
+        return int(bulges[1] > bulges[0])
     apart = _mean_normal(face_2) - _mean_normal(face_1)
     differing = np.flatnonzero(np.abs(apart) > _ALIKE)
     return int(len(differing) > 0 and apart[differing[-1]] < 0.0)
@@ -68,6 +71,18 @@ def _length_within(face: Face | Surface, other: Face | Surface) -> float:
 
 
 def _mean_normal(face: Face | Surface) -> np.ndarray:
+    return face.sizes @ face.normals(*_middles(face)) / face.sizes.sum()
+
+
+def _bulge(face: Face | Surface) -> float:
+    """Mean distance of the facets from their centre along their normals, by the size; 0: flat."""
+    middles, shares = _middles(face), face.sizes / face.sizes.sum()
+    points = face.points(*middles)
+    outward = np.einsum("ni,ni->n", points - shares @ points, face.normals(*middles))
+    return float(shares @ outward) / face.extent
+
+
+def _middles(face: Face | Surface) -> tuple[np.ndarray, np.ndarray]:
+    """Facets and parameters of their middles."""
     centre = lattice(1, face.kind).mean(axis=0, keepdims=True)
-    normals = face.normals(*face.on_each(centre if face.dim > 1 else centre.ravel()))
-    return face.sizes @ normals / face.sizes.sum()
+    return face.on_each(centre if face.dim > 1 else centre.ravel())

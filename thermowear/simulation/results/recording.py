@@ -211,7 +211,8 @@ def comparable_pressure(system: System, pressure: np.ndarray, worn: np.ndarray) 
     own = method not in ("penalty", "nitsche") or system.model.interface.method.penalty is not None
     if own or worn.any() or not pressure.any():
         return pressure
-    return resolved_pressure(system.basis, system.weights, pressure)
+    directions = system.traction_direction[:, ~system.cancelled(system.model.interface)]
+    return resolved_pressure(system.basis, system.weights, pressure, directions)
 
 
 def _fluid(system: System) -> np.ndarray:

@@ -32,6 +32,7 @@ from ...laws.distribution import Distribution
 from ...laws.interfaces import Law
 from ...laws.motions import RigidMotion, combined
 from ...model.body import Facing
+from ...model.interface import Interface
 from ...model.model import Model, Zone
 from ...parallel import sum_over_ranks
 from ...timer import Phases
@@ -156,13 +157,17 @@ class System:
         found = []
         for interface, (pairing, own) in zip(self.model.interfaces, self.contacts, strict=True):
             force = (pairing.weights * pressure[own]) @ pairing.normals
-            bodies = [self.model.bodies[body] for body in interface.bodies]
-            cut = [self.model.kinematics == "axisymmetric" or bool(self.model.symmetry)]
-            if self.contacts.in_space:
-                cut += [all(b.rollers for b in bodies), all(b.mid_plane for b in bodies)]
-            force[np.flatnonzero(cut)] = 0.0
-            found.append(float(np.linalg.norm(force)))
+            found.append(float(np.linalg.norm(force[~self.cancelled(interface)])))
         return found
+
+    def cancelled(self, interface: Interface) -> np.ndarray:
+        """Components of forces at an interface that cancel in the whole body, bool (gdim,)."""
+        bodies = [self.model.bodies[body] for body in interface.bodies]
+        result = np.zeros(self.bodies.dim, dtype=bool)
+        result[0] = self.model.kinematics == "axisymmetric" or bool(self.model.symmetry)
+        if self.contacts.in_space:
+            result[1:] = all(b.rollers for b in bodies), all(b.mid_plane for b in bodies)
+        return result
 
     @cached_property
     def modes_of_holders(self) -> tuple[slice, ...]:

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.case.starter import HERTZ, changed, tables
-from tests.simulation.geometry_update.test_thickness import STRIP, Notes
+from tests.simulation.geometry_update.test_outer_loop import STRIP, Notes
 from thermowear import load, run
 
 

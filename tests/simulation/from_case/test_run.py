@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.simulation.geometry_update.test_thickness import STRIP
+from tests.simulation.geometry_update.test_outer_loop import STRIP
 from thermowear import load, run
 from thermowear.errors import CaseNote
 

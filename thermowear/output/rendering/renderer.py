@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from tempfile import TemporaryFile
-from threading import Timer
+from threading import Event, Timer
 
 from .display import ending_with_parent
 from .jobs import PictureJob
@@ -95,19 +95,24 @@ class Renderer:
         process = self._process
         assert process is not None
         assert process.stdout is not None
-        watch = Timer(job.timeout, process.kill)
+        late = Event()  # set before the kill: the thread may outlive the answer that it ends
+
+        def give_up() -> None:
+            late.set()
+            process.kill()
+
+        watch = Timer(job.timeout, give_up)
         watch.daemon = True
         watch.start()
         try:
             line = process.stdout.readline()
-            late = not watch.is_alive()
         finally:
             watch.cancel()
         if line:
             return str(json.loads(line))
         code = process.wait()
         self._end()
-        return f"not done after {job.timeout:g} s" if late else self._last_words(code)
+        return f"not done after {job.timeout:g} s" if late.is_set() else self._last_words(code)
 
     def _last_words(self, code: int) -> str:
         """End of the process in words, with the last line that it printed."""

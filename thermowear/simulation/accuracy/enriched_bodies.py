@@ -179,6 +179,21 @@ def temperature_change(
     return TemperatureChange(np.array(coupled.rise) + finer, problem.functions(before + change))
 
 
+def heated_faces(
+    system: System, thermal: ThermalSystem, friction_heat: np.ndarray, conductance: np.ndarray
+) -> np.ndarray:
+    """Rises of both faces by steady conduction of a change of the friction heat (2, n) [K].
+
+    The heat, shape (n,) [W/m²], is one of details: that of the mean is given. Every rank calls.
+    """
+    face = thermal.face
+    heat = face.partition * friction_heat
+    fluxes = zip(face.traces, (heat, friction_heat - heat), strict=True)
+    field = thermal.conduction.respond(sum(trace @ (face.weights * flux) for trace, flux in fluxes))
+    rises = np.array([sum_over_ranks(system.comm, trace.T @ field) for trace in face.traces])
+    return _levelled(rises, 1 / np.array(face.layers), conductance)
+
+
 def _other_heat(
     system: System,
     heat: Heat,

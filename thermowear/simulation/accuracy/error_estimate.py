@@ -34,7 +34,7 @@ from ..results.recording import Snapshot
 from ..system.building import sliding_contact
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from .enriched_bodies import EnrichedBodies, TemperatureChange, temperature_change
+from .enriched_bodies import EnrichedBodies, TemperatureChange, heated_faces, temperature_change
 
 _FOLLOWING = 1.5
 """Ratio of the change by all higher degrees to that by the next one: 1 + 1/3 + 1/9 …"""
@@ -117,7 +117,7 @@ def estimate_errors(analysis: Analysis, end: Snapshot, time: float) -> ErrorEsti
     )
     heated, why = _temperature_change(end, time)
     if heated is not None:
-        errors["temperature"] = _of_temperature(end, heated)
+        errors["temperature"] = _of_temperature(end, heated, end.interface.pressure)
     if errors["temperature"] is None:
         missing["temperature"] = why or _AMBIENT
     bodies = EnrichedBodies(system)
@@ -133,6 +133,8 @@ def estimate_errors(analysis: Analysis, end: Snapshot, time: float) -> ErrorEsti
         else:
             enriched = _enriched_pressure(end, bodies, opened)
             change = _wear_change(end, enriched)
+            if heated is not None:
+                errors["temperature"] = _of_temperature(end, heated, enriched)
         errors["pressure"], errors["max_pressure"] = _of_pressure(end, enriched)
         if not steady and _singular(end):
             errors["max_pressure"], missing["max_pressure"] = None, _SINGULAR
@@ -192,10 +194,21 @@ def _temperature_change(end: Snapshot, time: float) -> tuple[TemperatureChange |
     return temperature_change(end.system, heat, thermal, found, conductance, time), None
 
 
-def _of_temperature(end: Snapshot, heated: TemperatureChange) -> float | None:
-    assert end.bodies.temperatures is not None
-    largest = float(np.abs(end.bodies.temperatures.faces.rise).max())
-    return _FOLLOWING * float(np.abs(heated.faces).max()) / largest if largest > 0 else None
+def _of_temperature(
+    end: Snapshot, heated: TemperatureChange, enriched: np.ndarray
+) -> float | None:
+    """Error of the temperature by its change and that of the pressure, which makes the heat."""
+    system, found, conditions = end.system, end.bodies.temperatures, end.contact.conditions
+    assert found is not None
+    assert system.thermal is not None
+    largest = float(np.abs(found.faces.rise).max())
+    if largest == 0.0:
+        return None
+    more = conditions.heating * (enriched - end.interface.pressure)
+    faces = heated.faces
+    if more.any():
+        faces = faces + heated_faces(system, system.thermal, more, conditions.conductance)
+    return _FOLLOWING * float(np.abs(faces).max()) / largest
 
 
 def _shaped(end: Snapshot, steady: bool) -> list[slice]:

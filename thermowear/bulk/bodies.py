@@ -244,7 +244,12 @@ def created_mesh(comm, kind: str, order: int, cells: np.ndarray, points: np.ndar
         return dolfinx.graph.adjacencylist(bisected(middles, ranks)[:, None])
 
     chosen = {"partitioner": partitioner} if comm.size > 1 else {}
-    return dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=element, **chosen)
+    mesh = dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=element, **chosen)
+    domain = mesh.ufl_domain()
+    # UFL asks for the cell hundreds of times a form, and would build it anew with all its parts
+    cell = domain.ufl_cell()
+    domain.ufl_cell = lambda: cell
+    return mesh
 
 
 def bisected(points: np.ndarray, parts: int) -> np.ndarray:

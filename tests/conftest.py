@@ -12,7 +12,7 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")  # before numpy: runs here and in 
 
 import numpy as np
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 import thermowear as tw
 from thermowear.app.cli import main
@@ -21,8 +21,9 @@ from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from .gmsh_meshes import Interval, add_grid, tagged_mesh
 
 # the same examples every time, so that a red test is the change's own; `make verify` looks for more
-settings.register_profile("fixed", derandomize=True, deadline=None)
-settings.register_profile("explore", max_examples=500, deadline=None)
+_UNTIMED = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("fixed", _UNTIMED, derandomize=True)
+settings.register_profile("explore", _UNTIMED, max_examples=500)
 EXPLORES = os.environ.get("HYPOTHESIS_PROFILE") == "explore"
 settings.load_profile("explore" if EXPLORES else "fixed")
 

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mp
 ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
-def thermowear(ranks, *arguments, module="thermowear", timeout=300):
+def thermowear(ranks, *arguments, module="thermowear"):
     """Run the program, or another module, on some ranks."""
     command = [sys.executable, "-m", module, *map(str, arguments)]
     if ranks > 1:
@@ -31,7 +31,7 @@ def thermowear(ranks, *arguments, module="thermowear", timeout=300):
         text=True,
         check=False,
         env=environment | ROOT,
-        timeout=timeout,
+        timeout=300,
     )
 
 
@@ -144,7 +144,7 @@ def test_a_model_in_python_on_a_distributed_mesh(tmp_path):
 
 def test_a_state_is_saved_on_two_ranks(tmp_path):
     """requirement: continued from its file a running-in is bit by bit the same on each rank."""
-    done = thermowear(2, "saved", tmp_path, module="tests.scripting.on_ranks", timeout=120)
+    done = thermowear(2, "saved", tmp_path, module="tests.scripting.on_ranks")
     assert done.returncode == 0, done.stderr
     first, second = (np.load(tmp_path / f"found_{rank}.npz") for rank in (0, 1))
     assert first["state"].max() > 0.0
@@ -161,7 +161,7 @@ def test_a_state_is_saved_on_two_ranks(tmp_path):
 )
 def test_a_fault_of_one_rank_is_raised_on_all(tmp_path, fault, message):
     """requirement: no deadlock; each rank raises the error that rank 0 finds."""
-    done = thermowear(2, fault, tmp_path, module="tests.scripting.on_ranks", timeout=60)
+    done = thermowear(2, fault, tmp_path, module="tests.scripting.on_ranks")
     assert done.returncode == 0, done.stderr
     assert all(message in (tmp_path / f"fault_{rank}.txt").read_text() for rank in (0, 1))
 

@@ -245,10 +245,9 @@ def created_mesh(comm, kind: str, order: int, cells: np.ndarray, points: np.ndar
 
     chosen = {"partitioner": partitioner} if comm.size > 1 else {}
     mesh = dolfinx.mesh.create_mesh(comm, cells=cells, x=points, e=element, **chosen)
-    domain = mesh.ufl_domain()
-    # UFL asks for the cell hundreds of times a form, and would build it anew with all its parts
-    cell = domain.ufl_cell()
-    domain.ufl_cell = lambda: cell
+    # UFL asks for it some ten times a form, and basix makes it each time: a sixth of a short run
+    cell = element.cell
+    mesh.ufl_domain().ufl_cell = lambda: cell
     return mesh
 
 

@@ -7,14 +7,14 @@ a hundredth of its square: whatever the mesh, singular points then count if they
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
-import ufl
 
 from ...bulk.body_mesh import BodyMesh
 from ...geometry.checks.mesh_checks import length
 from ..geometry_update.outer_loop import thickness_at
-from ..results.cell_grids import GRIDS, divisions
-from ..results.recording import Snapshot, sampled, von_mises
+from ..results.recording import Samples, Snapshot
 from ..system.system import System
 
 _STRAIN = 0.02
@@ -31,9 +31,9 @@ _SIZES = {"quadrilateral": 1.0, "triangle": 1 / 2, "hexahedron": 1.0, "tetrahedr
 """Sizes of the reference cells."""
 
 
-def beyond_elasticity(end: Snapshot) -> list[str]:
+def beyond_elasticity(end: Snapshot, samples: Sequence[Samples]) -> list[str]:
     """Notes on a state that linear elasticity does not describe well. Every rank calls."""
-    return [*_approaches(end), *_stresses(end)]
+    return [*_approaches(end), *_stresses(end, samples)]
 
 
 def _approaches(end: Snapshot) -> list[str]:
@@ -62,11 +62,11 @@ def _approaches(end: Snapshot) -> list[str]:
     return found
 
 
-def _stresses(end: Snapshot) -> list[str]:
+def _stresses(end: Snapshot, samples: Sequence[Samples]) -> list[str]:
     """Notes on large strains, on yielding, and on the clamped surfaces of hot bodies."""
     system = end.system
     small = _small(end)
-    table = system.comm.gather(_highest(_points(end), small), root=0)
+    table = system.comm.gather(_highest(_points(end.system, samples), small), root=0)
     notes: list[str] = []
     if table is not None:
         columns = zip(*table, strict=True)
@@ -146,22 +146,19 @@ def _small(end: Snapshot) -> float:
     return _EXCEEDED * min(one for one in sizes if one > 0.0) ** system.bodies.dim
 
 
-def _points(end: Snapshot) -> tuple[np.ndarray, ...]:
+def _points(system: System, samples: Sequence[Samples]) -> tuple[np.ndarray, ...]:
     """Stress, share of the size, place, part and clamped surface (-1: none) at points of cells."""
-    system, columns = end.system, []
+    columns = []
     surfaces = [name for body in system.model.bodies for name in body.fixed]
-    n = divisions(system.bodies, max(system.model.discretisation.degree, 2))
-    for body, stress in zip(system.bodies.each, von_mises(end), strict=True):
-        grid = GRIDS[body.cell_type](n)[0]
-        size = ufl.as_vector([abs(ufl.JacobianDeterminant(body.mesh))])
-        points, values, sizes = sampled(body.mesh, grid, [stress, size])
+    for body, one in zip(system.bodies.each, samples, strict=True):
+        count = one.points.shape[1]
         of_cells = body.parts_of_cells(np.arange(body.n_cells)), _clamps(system, body, surfaces)
         columns.append(
             (
-                values.ravel(),
-                _SIZES[body.cell_type] / len(grid) * sizes.ravel(),
-                points.reshape(-1, points.shape[2]),
-                *(np.repeat(one, len(grid)) for one in of_cells),
+                one.fields[1].ravel(),
+                _SIZES[body.cell_type] / count * one.stretch.ravel(),
+                one.points.reshape(-1, system.bodies.dim),
+                *(np.repeat(values, count) for values in of_cells),
             )
         )
     return tuple(np.concatenate(column) for column in zip(*columns, strict=True))

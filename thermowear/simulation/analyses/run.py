@@ -25,7 +25,7 @@ from ...timer import Phases
 from ..accuracy.error_estimate import estimate_errors
 from ..cycles.fretting import FrettingHistory
 from ..cycles.reciprocating import ReciprocatingHistory
-from ..results.recording import Snapshot, sample
+from ..results.recording import Snapshot, fields_of, sample
 from ..results.summary import merged
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
@@ -118,9 +118,10 @@ def solve(
     with system.phases("error estimate"):
         result = _estimated(analysis, end, result, observer)
     with system.phases("fields"):
-        fields = sample(end)
-        for note in beyond_elasticity(end):
+        samples = sample(end)
+        for note in beyond_elasticity(end, samples):
             observer.note(note)
+        fields = fields_of(end.system, samples)
     return end, replace(balanced(result), fields=fields)
 
 

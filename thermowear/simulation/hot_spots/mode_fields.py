@@ -10,7 +10,7 @@ from ...bulk.field import as_function
 from ...laws.wave_modes import WaveMode
 from ...results import HotSpotFields, HotSpotMode
 from ..results.cell_grids import GRIDS, divisions
-from ..results.recording import body_of_cells, sampled
+from ..results.recording import gathered, sampled
 from .wave_model import WaveModel, WaveSystem
 
 SIGNS = {"whole": 0, "symmetric": 1, "antisymmetric": -1}
@@ -28,30 +28,26 @@ def mode_fields(model: WaveModel, waves: WaveSystem, mode: WaveMode) -> HotSpotM
         [spaces.split(part) for part in (field.real, field.imag)]
         for spaces, field in ((heat, temperature), (elastic, displacement))
     ]
-    columns = []
+    samples = []
     for k, body in enumerate(system.bodies.each):
         fields: list[fem.Function] = [
             as_function(space, part[k], "mode")
             for space, field in zip((heat.each[k], elastic.each[k]), parts, strict=True)
             for part in field
         ]
-        grid = GRIDS[body.cell_type](n)[0]
-        columns.append((body_of_cells(system, body), *sampled(body.mesh, grid, fields)))
-    found, mirror = system.bodies.in_file_order(columns), _mirror_plane(model)
+        samples.append(sampled(body.mesh, *GRIDS[body.cell_type](n), fields))
+    found, mirror = gathered(system, samples), _mirror_plane(model)
     if found is None:
         return None
-    kinds = {body.block: body.cell_type for body in system.bodies.each}
     blocks = tuple(
         HotSpotFields(
             points[..., :2],
-            GRIDS[kinds[number]](n)[1],
+            pieces,
             body,
             (T_real + 1j * T_imag)[..., 0],
             _along_wave(u_real + 1j * u_imag),
         )
-        for number, (body, points, T_real, T_imag, u_real, u_imag) in zip(
-            sorted(kinds), found, strict=True
-        )
+        for pieces, body, points, T_real, T_imag, u_real, u_imag in found
     )
     return HotSpotMode(
         waves.wave.number,

@@ -5,6 +5,7 @@ Fields of the bodies are sampled on a fine grid in every cell and gathered on ra
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,9 +14,10 @@ import ufl
 from ...bulk.body_mesh import BodyMesh
 from ...bulk.compiled import compiled_expression
 from ...bulk.heat.varying import straining_rises
-from ...compat import evaluate
+from ...compat import coordinate_element, evaluate, geometry_dofmap
 from ...contact.full.full_system import resolved_pressure
 from ...contact.wear.implicit_step import WearRates
+from ...lagrange import equispaced, tabulated
 from ...laws.motions import RigidMotion, spatial
 from ...laws.principle.least_worn import least_worn
 from ...results import (
@@ -39,6 +41,27 @@ from .coatings import coating_left
 _INSET = 1e-6  # keeps samples off the axis, where u_r / r is 0/0
 _LEAST_COSINE = 0.05
 """Least cosine between face normal and load direction for a shape along the load direction."""
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Fields on a grid in each owned cell of a body.
+
+    Attributes
+    ----------
+    points : ndarray, shape (n_cells, n_points, gdim)
+        Coordinates [m].
+    stretch : ndarray, shape (n_cells, n_points)
+        Volume per volume of the reference cell, in a section area [m³ or m²].
+    pieces : ndarray of int
+        Points of the small cells of the grid.
+    fields : list of ndarray, shape (n_cells, n_points, components)
+    """
+
+    points: np.ndarray
+    stretch: np.ndarray
+    pieces: np.ndarray
+    fields: list[np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -261,52 +284,47 @@ def along_load(system: System) -> np.ndarray:
     return np.where(along > _LEAST_COSINE, along, np.nan)
 
 
-def sample(snapshot: Snapshot) -> AnyFields | None:
-    """Sample displacement (holders' motion included), temperature and von Mises stress.
+def sample(snapshot: Snapshot) -> list[Samples]:
+    """Sample displacement (holders' motion included), von Mises stress and temperature.
 
-    Bodies are drawn at their positions of the last mesh motion to the worn faces: a body shortened
-    by wear stays in contact with the others.
-
-    Every rank calls; ranks other than 0 return None. Cells are in the order of the mesh file.
+    Of the owned cells of each body. Every rank calls.
     """
     system, heated = snapshot.system, snapshot.bodies.temperatures
     elastic, thermal = system.elastic, system.thermal
-    n = divisions(system.bodies, max(system.model.discretisation.degree, 2))
     u = elastic.spaces.functions(snapshot.displacement, "u")
-    wanted = [list(pair) for pair in zip(u, von_mises(snapshot), strict=True)]
+    wanted = [list(pair) for pair in zip(u, _von_mises(snapshot), strict=True)]
     if heated is not None and thermal is not None:
         rises = thermal.conduction.spaces.functions(heated.rise, "rise")
         wanted = [[*fields, rise] for fields, rise in zip(wanted, rises, strict=True)]
-    found = system.bodies.in_file_order(
-        [
-            (
-                body_of_cells(system, body),
-                *sampled(body.mesh, GRIDS[body.cell_type](n)[0], fields),
-            )
-            for body, fields in zip(system.bodies.each, wanted, strict=True)
-        ]
-    )
+    n = divisions(system.bodies, max(system.model.discretisation.degree, 2))
+    each = zip(system.bodies.each, wanted, strict=True)
+    return [sampled(body.mesh, *GRIDS[body.cell_type](n), fields) for body, fields in each]
+
+
+def fields_of(system: System, samples: Sequence[Samples]) -> AnyFields | None:
+    """Fields of the bodies from their samples on rank 0; None on others. Every rank calls.
+
+    Bodies are drawn at their positions of the last mesh motion to the worn faces: a body shortened
+    by wear stays in contact with the others.
+    """
+    found = gathered(system, samples)
     if found is None:
         return None
-    kinds = {body.block: body.cell_type for body in system.bodies.each}
-    blocks = [
-        _fields(system, GRIDS[kinds[number]](n)[1], *columns)
-        for number, columns in zip(sorted(kinds), found, strict=True)
-    ]
+    blocks = [_fields(system, *columns) for columns in found]
     return blocks[0] if len(blocks) == 1 else MixedFields(tuple(blocks))
 
 
-def von_mises(snapshot: Snapshot) -> list:
+def _von_mises(snapshot: Snapshot) -> list:
     """Expression of the von Mises stress of each body [Pa]; every rank calls."""
     system, state = snapshot.system, snapshot.bodies
     elastic, thermal, heated = system.elastic, system.thermal, state.temperatures
     du = elastic.spaces.functions(state.displacement, "u")
     if heated is None or thermal is None:
-        return [_von_mises(body.stress(d)) for body, d in zip(elastic.each, du, strict=True)]
+        return [_equivalent(body.stress(d)) for body, d in zip(elastic.each, du, strict=True)]
     spaces = thermal.conduction.spaces
     straining = straining_rises(spaces, heated.rise, system.bodies, thermal.expansions)
     hot = zip(elastic.each, du, straining, strict=True)
-    return [_von_mises(body.stress(d, T)) for body, d, T in hot]
+    return [_equivalent(body.stress(d, T)) for body, d, T in hot]
 
 
 def _fields(
@@ -331,17 +349,41 @@ def _fields(
     return BodyFields(points, pieces, body, displacement, absolute, mises[..., 0])
 
 
-def sampled(mesh, grid: np.ndarray, fields: list) -> list[np.ndarray]:
-    """Coordinates and fields on a grid in each owned cell, (n_cells, n_points, components)."""
+def sampled(mesh, grid: np.ndarray, pieces: np.ndarray, fields: list) -> Samples:
+    """Sample fields on a grid in each owned cell, which divides it into pieces."""
     cells = np.arange(mesh.topology.index_map(mesh.topology.dim).size_local, dtype=np.int32)
+    placed, *stretched = tabulated(
+        equispaced(mesh.topology.cell_name(), coordinate_element(mesh).degree), grid, 1
+    )
+    nodes = mesh.geometry.x[geometry_dofmap(mesh)[cells], : mesh.geometry.dim]
+    jacobian = np.tensordot(nodes, stretched, (1, 2)).transpose(0, 3, 1, 2)
     centre = grid.mean(axis=0)
     inside = centre + (grid - centre) * (1 - _INSET)
-    wanted = [(ufl.SpatialCoordinate(mesh), grid), *((field, inside) for field in fields)]
-    expressions = [compiled_expression(*each, mesh.comm) for each in wanted]
-    return [evaluate(expression, mesh, cells) for expression in expressions]
+    expressions = [compiled_expression(field, inside, mesh.comm) for field in fields]
+    return Samples(
+        placed @ nodes,
+        np.abs(np.linalg.det(jacobian)),
+        pieces,
+        [evaluate(expression, mesh, cells) for expression in expressions],
+    )
 
 
-def body_of_cells(system: System, body: BodyMesh) -> np.ndarray:
+def gathered(system: System, samples: Sequence[Samples]) -> list[tuple[np.ndarray, ...]] | None:
+    """Pieces, bodies, points and fields of the cells of each type, in the order of the mesh file.
+
+    On rank 0; None on others. Every rank calls.
+    """
+    each = list(zip(system.bodies.each, samples, strict=True))
+    found = system.bodies.in_file_order(
+        [(_body_of_cells(system, body), one.points, *one.fields) for body, one in each]
+    )
+    if found is None:
+        return None
+    pieces = {body.block: one.pieces for body, one in each}
+    return [(pieces[block], *columns) for block, columns in zip(sorted(pieces), found, strict=True)]
+
+
+def _body_of_cells(system: System, body: BodyMesh) -> np.ndarray:
     """Number of the body (from 1) that each owned cell belongs to."""
     bodies = enumerate(system.model.bodies, start=1)
     numbers = {part: number for number, each in bodies for part in each.parts}
@@ -349,6 +391,6 @@ def body_of_cells(system: System, body: BodyMesh) -> np.ndarray:
     return of_parts[body.parts_of_cells(np.arange(body.n_cells))]
 
 
-def _von_mises(σ):
+def _equivalent(σ):
     s = σ - ufl.tr(σ) / 3 * ufl.Identity(3)
     return ufl.sqrt(1.5 * ufl.inner(s, s))

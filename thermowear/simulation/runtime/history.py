@@ -27,7 +27,7 @@ from ...results import (
     TangentialRow,
     TrackHistory,
 )
-from ..results.recording import Snapshot, sample
+from ..results.recording import Snapshot, fields_of, sample
 from ..results.summary import conclude
 from ..system.system import System
 from .observer import AnyRow, Observer, Progress, Saved
@@ -260,7 +260,8 @@ class AnalysisHistory(ABC, Generic[State]):
             return
         with self._system.phases("frames"):
             now = self.snapshot(state)
-            shown = now.interface, sample(now), now.track, now.system.ranges_by_name
+            fields = fields_of(now.system, sample(now))
+            shown = now.interface, fields, now.track, now.system.ranges_by_name
             self._observer.frame(Frame(number, every, state.time, *shown))
 
 

@@ -362,3 +362,20 @@ def test_a_surface_has_no_zones():
     assert contact_zones(pairing, np.ones(len(pairing.weights))) == []
     assert np.isnan(pairing.position).all()
     assert pairing.extent == pytest.approx(SIZE[0])
+
+
+@pytest.mark.parametrize("moved_by", [0.14, 0.18])
+def test_distorted_facets_do_not_fold_back(moved_by):
+    """requirement: edges of second order whose middles lie anywhere in a plane cover the face
+    once, though the facets, extended by their own curves, fold over next to it."""
+    upper, lower = faces(OTHER, 2, (straight, straight), "tetrahedron")
+    numbers, nodes = upper.numbers(2), upper.nodes.reshape(-1, 3)
+    _, first, uses = np.unique(numbers, return_index=True, return_counts=True)
+    x, y = nodes[first, :2].T / np.array(SIZE)[:, None]
+    inside = (uses == 2) & (x > 0.01) & (x < 0.99) & (y > 0.01) & (y < 0.99)
+    way = np.random.default_rng(3).uniform(-1, 1, (numbers.max() + 1, 3)) * [1.0, 1.0, 0.0]
+    way[numbers.ravel()[first][~inside]] = 0.0
+    upper = replace(upper, nodes=upper.nodes + moved_by * upper.lengths.mean() * way[numbers])
+    pairing = pair(upper, lower, Spatial(), 4)
+    assert pairing.weights.sum() == pytest.approx(SIZE[0] * SIZE[1], rel=1e-2)
+    assert pairing.unpaired < 1e-2

@@ -45,7 +45,7 @@ def nearest(
     Points whose closest one on the given facet lies inside it are not sought elsewhere.
     """
     facet, start = facet.copy(), t.reshape(len(points), -1)
-    place = _inside(face, points, facet, start)
+    place = inside(face, points, facet, start)
     beyond = np.flatnonzero(face.at_edge(place))
     if len(beyond):
         facet[beyond], place[beyond] = _closest(face, points[beyond])
@@ -99,7 +99,7 @@ def _closest(face: FacetSet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray
     sampled = face.sampled_nearby(points)
     if sampled is not None:
         point, facet, start = sampled
-        t = _inside(face, points[point], facet, start)
+        t = inside(face, points[point], facet, start)
         distance = np.linalg.norm(face.points(facet, t) - points[point], axis=1)
         order = np.lexsort((distance, point))
         chosen = order[np.unique(point[order], return_index=True)[1]]
@@ -108,7 +108,7 @@ def _closest(face: FacetSet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray
     starts = face.inside(face.flattened.parameters(facets, points[:, None]))
     places = np.stack(
         [
-            _inside(face, points, facet, start)
+            inside(face, points, facet, start)
             for facet, start in zip(facets.T, starts.swapaxes(0, 1), strict=True)
         ]
     )
@@ -118,7 +118,7 @@ def _closest(face: FacetSet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray
     return facets[every, best], places[best, every]
 
 
-def _inside(face: FacetSet, points, facet: np.ndarray, start: np.ndarray) -> np.ndarray:
+def inside(face: FacetSet, points, facet: np.ndarray, start: np.ndarray) -> np.ndarray:
     """Parameters (n, dim) of the closest points of given facets."""
     if face.kind != "triangle":
         return within(face, points, facet, start, bounds=(0.0, 1.0))

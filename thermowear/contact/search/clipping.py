@@ -14,9 +14,9 @@ from functools import lru_cache
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...lagrange import corner_nodes, lattice
+from ...lagrange import lattice
 from ..faces.face import Surface
-from ..faces.projection import within
+from ..faces.projection import inside, within
 from .common_face import MAX_FACING_COSINE, opposite, opposite_parameters
 from .polygons import TOLERANCE, Polygons, anticlockwise, cut, divided, tidied
 
@@ -30,6 +30,8 @@ _REACH = 1.25
 """Radius, relative to that of its image, of the region opposite to a facet that is searched."""
 _EDGE_SEGMENTS = 4
 """Number of segments of a curved edge."""
+_NEARBY = (-0.75, 1.75)
+"""Parameters in which the extended map of a facet must not fold over."""
 _LEAST_STRETCH = 0.1
 """Smallest Jacobian of the extended map of a facet that is used, relative to that of the facet."""
 _CORNERS = {
@@ -188,8 +190,8 @@ def _on_extended(face: Surface, points, facet: np.ndarray, _) -> tuple[np.ndarra
     t = within(face, points, facet, start, bounds=(-np.inf, np.inf))
     folds = np.flatnonzero(_folding(face)[facet])
     if len(folds):
-        points, facet_, start = points[folds], facet[folds], np.clip(start[folds], 0.0, 1.0)
-        on = within(face, points, facet_, start, bounds=(0.0, 1.0))
+        points, facet_ = points[folds], facet[folds]
+        on = inside(face, points, facet_, face.inside(start[folds]))
         places, tangents = face.points_and_tangents(facet_, on)
         square = np.einsum("nki,nli->nkl", tangents, tangents)
         along = np.einsum("nki,ni->nk", tangents, points - places)
@@ -199,22 +201,17 @@ def _on_extended(face: Surface, points, facet: np.ndarray, _) -> tuple[np.ndarra
 
 @lru_cache(maxsize=2)
 def _folding(face: Surface) -> np.ndarray:
-    """Mask of quadrilaterals, given by their corners, that fold over within their size beyond them.
+    """Mask of facets, flat or curved, whose map folds over near them, (n_facets,).
 
-    The Jacobian determinant of a bilinear map is linear in the parameters.
+    The Jacobian of a bilinear map is smallest at corners, that of a curved facet anywhere.
     """
-    if face.kind == "triangle":
-        return np.zeros(len(face.nodes), dtype=bool)
-    a, b, c, d = face.nodes[:, corner_nodes(face.order, face.kind)].swapaxes(
-        0, 1
-    )  # at (0, 0), (0, 1), (1, 0), (1, 1)
-    ends = np.array([-1.0, 2.0])[:, None, None]
-    u = (1 - ends) * (c - a) + ends * (d - b)  # along the first parameter, by the second
-    v = (1 - ends) * (b - a) + ends * (d - c)
-    normals = np.cross(u[:, None], v[None])
+    steps = np.linspace(*_NEARBY, 2 * face.order)
+    facet, t = face.on_each(np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2))
+    first, second = face.tangents(facet, t).swapaxes(0, 1)
     outward = face.middle_normals * face.outward[:, None]
-    size = np.einsum("uvni,ni->uvn", normals, outward)
-    return size.min(axis=(0, 1)) < _LEAST_STRETCH * size.mean(axis=(0, 1))
+    size = np.einsum("ni,ni->n", np.cross(first, second), outward[facet])
+    size = size.reshape(len(face.nodes), -1)
+    return size.min(axis=1) < _LEAST_STRETCH * size.mean(axis=1)
 
 
 def _heights(kind: str, t: np.ndarray) -> np.ndarray:

@@ -34,9 +34,9 @@ _COINCIDENCE_TOLERANCE = 1e-10
 """Largest distance of coincident points, relative to the size of the face."""
 _AT_EDGE = 1e-2
 """Largest distance of points at the edge of a facet, relative to it."""
-_MAX_OVERLAP = 1e-3
-"""Fraction of a facet that may be covered twice, by rounding and curved edges; any on facets that
-are shorter than the gap."""
+_ROUNDING, _MAX_OVERLAP = 1e-3, 0.2
+"""Fraction of a facet that may be covered twice, by rounding and curved edges, without notice; and
+by normals that turn within distorted facets; any on facets that are shorter than the gap."""
 
 
 @dataclass(frozen=True)
@@ -221,14 +221,13 @@ def paired(
     covered: np.ndarray = np.bincount(
         facet, pieces.weight / face_1.measure, minlength=len(face_1.sizes)
     )
-    if covered.max() > 1.0 + _MAX_OVERLAP:
+    if covered.max() > 1.0 + _ROUNDING:
         nearest = np.full(len(covered), np.inf)
         np.minimum.at(nearest, facet, np.abs(pairs.gap))
-        apart = nearest > face_1.sizes ** (1 / face_1.dim)
-        if np.any(covered[~apart] > 1.0 + _MAX_OVERLAP):
+        # the opposite points of facets far apart are those of their continuation: not unique
+        if np.any((covered > 1.0 + _MAX_OVERLAP) & (nearest <= face_1.lengths)):
             raise CaseError(ambiguity_message(face_1, face_2))
-        # the opposite points of such facets are those of their continuation, which is not unique
-        share = 1 / np.where(apart, np.maximum(covered, 1.0), 1.0)
+        share = 1 / np.maximum(covered, 1.0)
         pieces = replace(pieces, weight=pieces.weight * share[facet])
         weights, covered = weights * share[facet], covered * share
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # before numpy: runs here and in processes agree
+os.environ.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")  # ranks wait for others off the core
 
 import numpy as np
 import pytest

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import fcntl
 import re
+import zlib
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeVar
@@ -54,8 +55,9 @@ def compiled(form):
 
 
 def compiled_expression(expression: ufl.core.expr.Expr, points, comm: MPI.Comm) -> fem.Expression:
-    """Compile a UFL expression for its values at points of the reference cell."""
-    options = {"timeout": _PATIENCE, "cache_dir": _cache() / "expressions"}
+    """Compile a UFL expression for its values at points (n, dim) of the reference cell."""
+    folder = _cache() / f"{zlib.crc32(points.tobytes()):08x}"[:2]
+    options = {"timeout": _PATIENCE, "cache_dir": folder}
     return patiently(lambda: fem.Expression(expression, points, jit_options=options), comm)
 
 

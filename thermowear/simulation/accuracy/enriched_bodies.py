@@ -59,9 +59,16 @@ class TemperatureChange:
 
 
 class EnrichedBodies:
-    """Elastic bodies of a system with the surplus space of the next degree. Every rank calls."""
+    """Elastic bodies of a system with the surplus space of the next degree. Every rank calls.
 
-    def __init__(self, system: System):
+    Parameters
+    ----------
+    system : System
+    near : list of ndarray or None
+        See `near_contact`.
+    """
+
+    def __init__(self, system: System, near: list[np.ndarray] | None):
         elastic, degree = system.elastic, system.model.discretisation.degree
         bodies = elastic.bodies
         surplus = surplus_spaces(bodies, degree, bodies.dim)
@@ -79,7 +86,7 @@ class EnrichedBodies:
             [(partial(body.virtual_work, degree=self._degree),) for body in elastic.each],
             _solver(system, elastic.solve),
             (elastic.fixed, np.concatenate(held)),
-            near=near_contact(system),
+            near=near,
         )
         self._trace = sp.vstack([system.trace, gap_trace(surplus, system.contacts)])
 
@@ -146,6 +153,7 @@ def temperature_change(
     temperatures: TemperatureField,
     conductance: np.ndarray,
     time: float,
+    near: list[np.ndarray] | None,
 ) -> TemperatureChange:
     """Change of temperatures by the next degree for a given friction heat; collective.
 
@@ -154,7 +162,7 @@ def temperature_change(
     Anal. 41 (2003) 1585).
     """
     conduction, face = thermal.conduction, thermal.face
-    problem = _conducting(system, heat, thermal)
+    problem = _conducting(system, heat, thermal, near)
     details = face_traces(problem.surplus, system.contacts)
     traces = [sp.vstack(both) for both in zip(face.traces, details, strict=True)]
     fluxes = zip(details, temperatures.faces.flux, strict=True)
@@ -240,7 +248,9 @@ def _levelled(rises: np.ndarray, own: np.ndarray, conductance: np.ndarray) -> np
     return rises + share * (rises[1] - rises[0]) * np.array([[1.0], [-1.0]])
 
 
-def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedProblem:
+def _conducting(
+    system: System, heat: Heat, thermal: ThermalSystem, near: list[np.ndarray] | None
+) -> EnrichedProblem:
     """Conduction with its surplus space; corrections transfer heat to a bath at both faces."""
     conduction, model, bodies = thermal.conduction, system.model, system.bodies
     degree, kinematics = model.discretisation.degree + 1, system.elastic.kinematics
@@ -277,7 +287,7 @@ def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedP
         (conduction.fixed, given),
         only_corrections,
         symmetric=advection is None,
-        near=near_contact(system),
+        near=near,
     )
 
 

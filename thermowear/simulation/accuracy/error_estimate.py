@@ -34,7 +34,13 @@ from ..results.recording import Snapshot
 from ..system.building import sliding_contact
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from .enriched_bodies import EnrichedBodies, TemperatureChange, heated_faces, temperature_change
+from .enriched_bodies import (
+    EnrichedBodies,
+    TemperatureChange,
+    heated_faces,
+    near_contact,
+    temperature_change,
+)
 
 _FOLLOWING = 1.5
 """Ratio of the change by all higher degrees to that by the next one: 1 + 1/3 + 1/9 …"""
@@ -115,12 +121,13 @@ def estimate_errors(analysis: Analysis, end: Snapshot, time: float) -> ErrorEsti
     errors: dict[str, float | None] = dict.fromkeys(
         ("pressure", "max_pressure", "shape", "temperature")
     )
-    heated, why = _temperature_change(end, time)
+    near = near_contact(system)
+    heated, why = _temperature_change(end, time, near)
     if heated is not None:
         errors["temperature"] = _of_temperature(end, heated, end.interface.pressure)
     if errors["temperature"] is None:
         missing["temperature"] = why or _AMBIENT
-    bodies = EnrichedBodies(system)
+    bodies = EnrichedBodies(system, near)
     opened = bodies.opening(end.contact, end.bodies, heated)
     flat = any(_flat_facets(side) for one in system.contacts.each for side in one.sides)
     if not end.interface.pressure.any():
@@ -180,7 +187,9 @@ def _wear_change(end: Snapshot, enriched: np.ndarray) -> np.ndarray:
     return _wear_per_pressure(end.system, end.interface) * (enriched - end.interface.pressure)
 
 
-def _temperature_change(end: Snapshot, time: float) -> tuple[TemperatureChange | None, str | None]:
+def _temperature_change(
+    end: Snapshot, time: float, near: list[np.ndarray] | None
+) -> tuple[TemperatureChange | None, str | None]:
     """Change of the temperatures by the next degree, or the reason why there is no estimate."""
     thermal, heat = end.system.thermal, end.system.model.heat
     found = end.bodies.temperatures
@@ -191,7 +200,7 @@ def _temperature_change(end: Snapshot, time: float) -> tuple[TemperatureChange |
     if thermal.varies:
         return None, "conductivity or expansion change with temperature"
     conductance = end.contact.conditions.conductance
-    return temperature_change(end.system, heat, thermal, found, conductance, time), None
+    return temperature_change(end.system, heat, thermal, found, conductance, time, near), None
 
 
 def _of_temperature(

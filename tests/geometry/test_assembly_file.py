@@ -371,6 +371,13 @@ def two_solids(folder, moved):
     return case
 
 
+def test_bodies_drawn_into_each_other(tmp_path):
+    """requirement: a pressed holder that ends far behind where it was drawn is no result."""
+    case = changed(two_solids(tmp_path, -0.2), {"analysis": {"type": "initial"}})
+    result = tw.run(tw.load(case))
+    assert "the holder ends 0.0002 m behind where it was drawn" in str(result.stopped)
+
+
 def test_validate_describes_all_bodies(joined, tmp_path, capsys):
     """requirement: `validate` reads the file and prints the size of each body."""
     import tomli_w

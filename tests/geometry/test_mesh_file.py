@@ -16,7 +16,7 @@ from thermowear.geometry.geometries.on_block import CylinderOnBlock
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.geometry.reading.export import write_mesh
 
-from ..case.starter import STEADY, tables
+from ..case.starter import STEADY, changed, tables
 from ..conftest import NAMES, two_blocks
 from .measure import areas, edges, scaled_jacobians, unnamed
 from .plain import NUMBERED, blocks, meshio_file
@@ -665,3 +665,86 @@ def test_several_integer_data(tmp_path, ending):
     text = fault(tmp_path / f"b.{ending}", **NUMBERED)
     assert "no surface named '3'" in text
     assert "tag=3, tag=4" in text
+
+
+HOOK = ((0, 0), (20, 0), (20, 4), (12, 4), (12, 2), (18, 2), (18, 1), (2, 1), (2, 6), (20, 6))
+"""Lower outline of a body whose bottom goes round a lip: two levels of it face down."""
+
+
+def hooked(path):
+    """Blocks as of `gmsh_blocks`, the upper one with a face that folds back."""
+    with gmsh_model("hook") as gmsh:
+        model, geo = gmsh.model, gmsh.model.geo
+        for name, corners in {
+            "PUNCH": (*HOOK, (20, 10), (0, 10)),
+            "PLATE": ((-5, -9), (25, -9), (25, 0), (-5, 0)),
+        }.items():
+            points = [geo.addPoint(x, y, 0) for x, y in corners]
+            nexts = points[1:] + points[:1]
+            lines = [geo.addLine(*ends) for ends in zip(points, nexts, strict=True)]
+            body = geo.addPlaneSurface([geo.addCurveLoop(lines)])
+            geo.synchronize()
+            model.addPhysicalGroup(2, [body], name=name)
+            below, above = (lines[:1], lines[2:3]) if name == "PLATE" else (lines[:9], lines[10:11])
+            model.addPhysicalGroup(1, below, name=f"{name}_BELOW")
+            model.addPhysicalGroup(1, above, name=f"{name}_ABOVE")
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 1)
+        model.mesh.generate(2)
+        gmsh.write(str(path))
+    return path
+
+
+SPREAD = {"advection": "spread", "cooling": {"held": "9 W/(m^2 K)"}, "ambient": "20 degC"}
+AT_ODDS = {
+    "folds back": (hooked, {}, "it is not clear which points of punch_face and plate_face meet"),
+    "no rows": (
+        lambda path: gmsh_blocks(path, triangles=True),
+        {"geometry.track": "1 m", "heat": SPREAD},
+        "'spread' needs rows of cells along the motion of 'plate'",
+    ),
+    "too far": (
+        gmsh_blocks,
+        {
+            "motion": {"amplitude": "9 mm", "frequency": "1 Hz"},
+            "analysis": {"type": "reciprocating", "cycles": 1},
+        },
+        "motion.amplitude: ",
+    ),
+}
+"""Meshes, changes of a case, and the line that both refuse it with."""
+
+
+@pytest.mark.parametrize("kind", AT_ODDS)
+def test_validate_refuses_what_no_run_can_begin_with(tmp_path, capsys, kind):
+    """requirement: what needs no solution to tell, `validate` tells in the words of `run`."""
+    write, changes, expected = AT_ODDS[kind]
+    path = write(tmp_path / "a.msh")
+    if kind == "folds back":
+        ends = {"punch_face": "PUNCH_BELOW", "plate_face": "PLATE_ABOVE"}
+        ends |= {"held": "PUNCH_ABOVE", "fixed": "PLATE_BELOW"}
+    else:
+        ends = {"punch_face": "FACE", "plate_face": "FACE", "held": "TOP", "fixed": "BOTTOM"}
+    steel = {"young_modulus": "200 GPa", "poisson_ratio": 0.3}
+    steel |= {"conductivity": "40 W/(m K)", "expansion": "1e-5 1/K"}
+    case = changed(
+        {
+            "model": "plane-strain",
+            "geometry": {"type": "file", "path": str(path)}
+            | GMSH_NAMES
+            | {"surfaces": ends, "held": "held", "fixed": "fixed", "thickness": "1 mm"},
+            "bodies": {"punch": steel, "plate": dict(steel)},
+            "load": {"force": "100 N"},
+            "contact": {"friction": 0.2},
+            "motion": {"velocity": "1 m/s"},
+            "wear": {"punch": {"coefficient": "1e-8 1/MPa", "per": "pressure"}},
+            "analysis": {"type": "initial"},
+        },
+        changes,
+    )
+    (tmp_path / "case.toml").write_text(tomli_w.dumps(case))
+    assert main(["validate", str(tmp_path / "case.toml")]) == 1
+    said = capsys.readouterr().err
+    with pytest.raises(CaseError) as refused:
+        tw.run(tw.load(case))
+    assert expected in str(refused.value)
+    assert said == f"error: {refused.value}\n"

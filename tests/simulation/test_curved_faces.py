@@ -126,9 +126,16 @@ def test_faces_side_by_side_are_refused(tmp_path, round_body):
 
 
 def test_a_holder_that_goes_back_is_no_result(tmp_path, round_body):
-    """requirement: bodies drawn into each other end with the reason, results kept."""
-    mesh = on_cylinder(round_body, round_body, 30.0, overlap=20e-6)
-    result = pressed(tmp_path / "a.msh", mesh)
-    assert isinstance(result.stopped, ComputationError)
-    assert "overlap by up to" in str(result.stopped)
-    assert result.summary["approach_m"] < 0.0
+    """requirement: bodies drawn into each other by more than 0.1 % of the face end with the reason,
+    results kept; the pressure of a lesser overlap is that of bodies that just touch."""
+    little, much = (
+        pressed(tmp_path / "a.msh", on_cylinder(round_body, round_body, 30.0, overlap=overlap))
+        for overlap in (20e-6, 400e-6)
+    )
+    assert isinstance(much.stopped, ComputationError)
+    assert "overlap by up to" in str(much.stopped)
+    assert much.summary["approach_m"] < little.summary["approach_m"] < 0.0
+    touching = pressed(tmp_path / "a.msh", on_cylinder(round_body, round_body, 30.0))
+    peaks = [result.summary["max_pressure_Pa"] for result in (little, touching)]
+    assert little.stopped is None
+    assert peaks[0] == pytest.approx(peaks[1], rel=1e-6)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -183,8 +182,8 @@ def test_bodies_on_both_sides_of_a_slower_one():
     """requirement: strokes have the sense of the first body over the second one."""
     faster = {"amplitude": "8 mm", "frequency": "2 Hz"}
     case = tw.load(changed(CASE, {"motions.upper": faster}))
-    system, settings = SimpleNamespace(model=model_of(case)), analysis_of(case)
-    amplitudes = strokes(system, settings) * settings.amplitude
+    settings = analysis_of(case)
+    amplitudes = strokes(model_of(case), settings) * settings.amplitude
     assert amplitudes == pytest.approx([3e-3, -5e-3], rel=1e-12)
 
 

@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 
 from .. import load
-from ..case.assembly.schema import AssemblyCase
+from ..case.tables.schema import Case
 from ..errors import CaseError
 
 
@@ -42,24 +42,28 @@ def validate(chosen) -> int:
     """Check a case without computing it."""
     case = load(chosen.case, tuple(chosen.overrides))
     properties = [f"{case.analysis.type} analysis", case.geometry.type, case.model]
-    if case.geometry.from_file or (case.model != "3d" and case.mesh.accuracy is None):
+    simple, read = isinstance(case, Case), case.geometry.from_file
+    if read or (case.model != "3d" and case.mesh.accuracy is None):
         mesh = case.tagged_mesh()
-        if case.geometry.from_file:
+        if read:
             from ..geometry.checks.mesh_checks import described, whole_bodies
+            from ..geometry.checks.pair_checks import has_plane_faces
 
-            properties += described(whole_bodies(mesh, case.geometry))
+            whole = whole_bodies(mesh, case.geometry)
+            properties += described(whole)
+            simple = isinstance(case, Case) and has_plane_faces(whole, case)
     carries = case.heat is not None and case.heat.advection != "none"
-    hangs = isinstance(case, AssemblyCase) and case.hanging
-    if case.initial_shapes or carries or hangs:
+    # faces that may not meet as they should
+    if not simple or carries or case.analysis.cyclic or case.initial_shapes:
         from .batch.computing import start_petsc
 
         start_petsc()
         from mpi4py import MPI
 
-        from ..simulation.from_case import model_of
-        from ..simulation.system.building import check_contact_points
+        from ..simulation.analyses.run import check
+        from ..simulation.from_case import analysis_of, model_of
 
-        check_contact_points(model_of(case), MPI.COMM_SELF)
+        check(model_of(case), analysis_of(case), MPI.COMM_SELF)
         properties += [f"initial shape {shape}" for shape in case.initial_shapes]
     if case.calibrate is not None:
         from .calibration.calibrate import described_data

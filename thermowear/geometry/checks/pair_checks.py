@@ -25,7 +25,7 @@ from .mesh_checks import (
     points_of,
     whole_bodies,
 )
-from .solid_pairs import compared_solids
+from .solid_pairs import area_vector, compared_solids
 
 if TYPE_CHECKING:
     from ...case.tables.geometry import Geometry
@@ -39,6 +39,8 @@ MUCH = 0.02
 """Compression relative to the height of a body above which a note is issued."""
 _APART = 0.01
 """Gap relative to the height of a body above which a note is issued."""
+_PLANE = 1e-9
+"""Largest excess of the area of a plane face over that of its projection, relative to it."""
 _AT_ONCE = 2000
 """Number of points at which faces are compared together."""
 _AS_THEY_ARE = np.eye(2)
@@ -107,6 +109,19 @@ def check_pair(mesh: AnyMesh, case: Case) -> None:
             f"geometry.path: the faces are {length(faces.gap)} apart before loading{faces.where}, "
             f"{faces.gap / height:.1%} {of_body}; move the faces to initial contact"
         )
+
+
+def has_plane_faces(mesh: AnyMesh, case: Case) -> bool:
+    """Whether both contact faces lie in a plane each, so that none can fold back."""
+    for name in case.geometry.contact:
+        if case.model == "3d":
+            vector, area = area_vector(mesh, name)
+        else:
+            along = np.diff(pieces(block_with(mesh, name), name), axis=1)[:, 0]
+            vector, area = along.sum(axis=0), float(np.hypot(*along.T).sum())
+        if np.linalg.norm(vector) < (1 - _PLANE) * area:
+            return False
+    return True
 
 
 def _check_approach(case: Case, faces: _Faces, approach: float, of_body: str) -> None:

@@ -8,6 +8,9 @@ from typing import Any
 import numpy as np
 
 from ...contact.faces.rim import near_chosen, on_edges, rim
+from ...contact.operators.pressure import jumps
+from ...contact.operators.rigid_motion import RigidHolder
+from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import PairedFace
 from ...errors import CaseError, ComputationError, percent
 from ...geometry.checks.mesh_checks import length
@@ -17,11 +20,13 @@ from ...model.analyses import (
     FrettingAnalysis,
     ReciprocatingAnalysis,
 )
+from ...model.model import Model
 from ...results import InterfaceFields
 from ..accuracy.error_estimate import WORTH_A_WARNING
 from ..geometry_update.outer_loop import GapWear
 from ..geometry_update.wider_zone import reaches_open_end
 from ..results.recording import Snapshot
+from ..system.building import require_carried
 from ..system.rigid_modes import applied
 from ..system.system import System
 
@@ -29,8 +34,8 @@ _ANALYSES = ("initial", "transient", "fretting", "reciprocating")
 """Analyses with a defined holder position; a steady state has no history leading to one."""
 _WORN_IN = ("steady", "stability")
 """Analyses whose pressure is that of wear that goes on for ever."""
-_BACK = 1e-9
-"""Rounding tolerance of the position, relative to the size of the face."""
+_BACK = 1e-3
+"""Motion, relative to the smallest face, up to which the drawn faces are those that meet."""
 _STEEP = -0.75
 """Largest cosine between the outward normals where faces press; up to -0.5 they are paired."""
 _MOLTEN = 3273.15
@@ -45,58 +50,74 @@ _OF_BODIES = (
 )
 
 
-def require_pressed(system: System) -> None:
-    """Reject a model in which nothing can close a contact.
+def require_computable(
+    model: Model, analysis: Analysis, contacts: Contacts, holder: RigidHolder
+) -> None:
+    """Reject what an analysis cannot compute, as far as no solution is needed to tell.
+
+    Parameters
+    ----------
+    model : Model
+    analysis : Analysis
+    contacts : Contacts
+        Contact points of the unworn bodies.
+    holder : RigidHolder
 
     Raises
     ------
     CaseError
+        If it does not support faces of several materials, layers, fluids or reactions; if nothing
+        presses the bodies together, or holds them.
     """
-    modes = system.holder.rigid_modes
-    loaded = any(mode.load or mode.amplitude or mode.history for mode in modes)
-    if loaded or system.thermal is not None or system.dead_load is not None:
+    if analysis.cyclic:
+        keys = [f"{one.table}.fluid_pressure" for one in model.interfaces if one.fluid_pressure]
+        keys += [f"holders.{one.name}.reaction" for one in model.holders if one.reaction]
+        if keys:
+            raise CaseError(f"{keys[0]}: is not supported in a {analysis.type} analysis")
+        unsupported = "contact faces with layers" if model.coated else ""
+        if any(jumps(pairing) for pairing in contacts.each):
+            unsupported = "contact faces of several materials that wear by different laws"
+        if unsupported:
+            raise CaseError(f"a {analysis.type} analysis does not support {unsupported}")
+    if isinstance(analysis, FrettingAnalysis):  # friction carries loads, too
         return
-    if not (system.contacts.gap < 0.0).any():
+    require_carried(model, contacts, holder)
+    loaded = any(mode.load or mode.amplitude or mode.history for mode in holder.rigid_modes)
+    loaded = loaded or any(one.surface_forces for one in model.holders)
+    loaded = loaded or any(one.fluid_pressure is not None for one in model.interfaces)
+    loaded = loaded or model.heat is not None or bool(model.surface_pressures)
+    if not loaded and not (contacts.gap < 0.0).any():
         raise CaseError(f"holders: {NOTHING_PRESSED}")
-
-
-def require_one_way(system: System, analysis: Analysis) -> None:
-    """Reject what analyses of faces that move back and forth do not support: fluids, reactions.
-
-    Raises
-    ------
-    CaseError
-    """
-    model = system.model
-    keys = [f"{one.table}.fluid_pressure" for one in model.interfaces if one.fluid_pressure]
-    keys += [f"holders.{one.name}.reaction" for one in model.holders if one.reaction]
-    if keys and analysis.cyclic:
-        raise CaseError(f"{keys[0]}: is not supported in a {analysis.type} analysis")
 
 
 def moved_against_load(
     system: System, analysis: Analysis, end: Snapshot
 ) -> ComputationError | None:
-    """Error for a holder that has moved against its load; None if it has not.
+    """Error for holders that have moved against their forces; None if they have not.
 
-    Without heat, fluid and loads on surfaces, ``F·d = ∫ p g dA + ∫ p A p dA``: the loads do
-    positive work on the holder unless the drawn faces overlap.
+    Without heat, fluid, loads on surfaces and given motions, ``F·d = ∫ p g dA + ∫ p A p dA``: the
+    forces do positive work on the holders unless the drawn faces overlap. Interference fits do so,
+    too, but move holders by strains alone.
     """
-    if not system.model.is_pair:
+    holders, free = system.model.holders, system.holder.rigid_modes
+    if analysis.type not in _ANALYSES or system.thermal is not None or system.worn is not None:
         return None
-    holder, pairing = system.model.holder, system.pairing
-    if analysis.type not in _ANALYSES or system.thermal is not None or holder.surface_forces:
+    force = sum(holder.force or 0.0 for holder in holders)
+    given = any(mode.amplitude is not None or mode.history for mode in free)
+    given = given or any(holder.reaction for holder in holders)
+    if not force or given or system.dead_load is not None:
         return None
-    if holder.force is None or system.worn is not None or system.model.interface.fluid_pressure:
-        return None
-    back = -applied(holder, end.motions[0]) / holder.force
-    if back <= _BACK * pairing.extent:
+    work = sum(applied(*pair) for pair in zip(holders, end.motions, strict=True))
+    extent = min(pairing.extent for pairing in system.contacts.each)
+    if -work <= _BACK * extent * force:
         return None
     pressing = end.contact.pressure > 0
-    overlap = -float(pairing.gap[pressing].min(initial=0.0))
+    overlap = -float(system.contacts.gap[pressing].min(initial=0.0))
+    several = len(holders) > 1
     return ComputationError(
-        f"contact: the holder ends {back:.3g} m behind where it was drawn, though it is pressed "
-        f"on: the contact faces overlap by up to {overlap:.3g} m before any load. Draw the bodies "
+        f"contact: the holder{'s end' if several else ' ends'} {-work / force:.3g} m behind where "
+        f"{'they were' if several else 'it was'} drawn, though pressed on: the contact faces "
+        f"overlap by up to {overlap:.3g} m before any load. Draw the bodies "
         "apart, so that they just touch; or name only the part of each face that is to touch"
     )
 

@@ -10,6 +10,7 @@ from mpi4py import MPI
 from numpy.linalg import LinAlgError
 
 from ...balances import judged
+from ...bulk.kinematics import kinematics_of
 from ...bulk.multigrid_solver import MultigridSolver
 from ...errors import CaseError, ComputationError, percent
 from ...model.analyses import (
@@ -25,11 +26,12 @@ from ...timer import Phases
 from ..accuracy.error_estimate import estimate_errors
 from ..cycles.fretting import FrettingHistory
 from ..cycles.reciprocating import ReciprocatingHistory
+from ..cycles.stroke import moved_contacts, stroke_ends, strokes
 from ..results.recording import Snapshot, fields_of, sample
 from ..results.summary import merged
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer, Saved, mesh_checksum
-from ..system.building import require_carried
+from ..system.building import contacts_of
 from ..system.system import System
 from .checks import (
     changed_by_updates,
@@ -38,8 +40,7 @@ from .checks import (
     inclined_faces,
     moved_against_load,
     open_contact,
-    require_one_way,
-    require_pressed,
+    require_computable,
     singular_pressure,
     stick_edge,
     too_hot,
@@ -49,9 +50,10 @@ from .positioning import prepare
 from .stability import hot_state, stability
 from .static import initial, steady
 from .transient import TransientHistory
-from .wearing_faces import wearing_faces
 
 _UNPAIRED = 1e-6
+_FOR_EVER = "steady", "stability"
+"""Analyses of wear that goes on for ever, in which all layers are worn through."""
 _HOT = ("initial", "steady", "transient")
 """Analyses whose states have a critical speed."""
 
@@ -90,6 +92,24 @@ def run(
     comm = MPI.COMM_WORLD if comm is None else comm
     system = prepare(model, comm, phases, single=needs_single_solution(model, analysis))
     return solve(system, analysis, observer, saved)[1]
+
+
+def check(model: Model, analysis: Analysis, comm=None) -> None:
+    """Check a model and its analysis as `run` does before it solves anything. Every rank calls.
+
+    Raises
+    ------
+    CaseError
+    """
+    comm = MPI.COMM_WORLD if comm is None else comm
+    contacts, holder = contacts_of(model, comm)
+    require_computable(model, analysis, contacts, holder)
+    if isinstance(analysis, ReciprocatingAnalysis):
+        kinematics = kinematics_of(model.kinematics, model.thickness, model.sector)
+        first, second, *_ = stroke_ends(analysis)
+        offset = (first + second) / 2 * strokes(model, analysis)
+        for there in (offset, -offset):
+            moved_contacts(model, comm, kinematics, contacts, there)
 
 
 def needs_single_solution(model: Model, analysis: Analysis) -> bool:
@@ -133,11 +153,13 @@ def analyse(
     Starts anew, or from the checkpoint of an analysis of the same system.
     """
     choice = system.choice
-    system = wearing_faces(system, analysis, observer)
-    if not isinstance(analysis, FrettingAnalysis):  # where friction carries loads, too
-        require_carried(system.model, system.contacts, system.holder)
-        require_pressed(system)
-    require_one_way(system, analysis)
+    require_computable(system.model, analysis, system.contacts, system.holder)
+    if system.model.coated and analysis.type in _FOR_EVER:
+        observer.note(
+            f"a {analysis.type} analysis describes wear that goes on for ever: all layers are worn "
+            "through, and the laws of the substrates hold"
+        )
+        system = system.worn_through()
     for note in (choice.note(), _factorised_conduction(system), _streamed(system, analysis)):
         if note is not None:
             observer.note(note)

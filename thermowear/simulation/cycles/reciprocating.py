@@ -31,7 +31,7 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
         super().__init__(system, settings, observer)
         self._timed = settings
         stroke = positions(system, settings)
-        self._problem = ReciprocatingProblem(system, stroke, strokes(system, settings))
+        self._problem = ReciprocatingProblem(system, stroke, strokes(system.model, settings))
 
     def states(self, last: Moment | None) -> Iterator[Moment]:
         sizes = AnySize(self._timed.max_jump / self._timed.frequency)

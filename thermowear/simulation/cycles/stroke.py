@@ -10,15 +10,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ...bulk.kinematics import Kinematics
 from ...contact.operators.pressure import Basis, dense, joined_bases, scaled
 from ...contact.operators.rigid_motion import Sliding, hold, joined_sliding, sliding
 from ...contact.operators.traces import gap_trace
+from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import Pairing
 from ...contact.solvers.coupled_positions import CoupledContacts
 from ...contact.wear.track import StrokeGrids
 from ...errors import CaseError
 from ...model.analyses import ReciprocatingAnalysis
 from ...model.interface import Interface
+from ...model.model import Model
 from ..points.contact_points import contact_points
 from ..system.rigid_modes import load_direction, rigid_modes
 from ..system.setup_cache import SetupCache
@@ -54,7 +57,7 @@ class Position:
     system: System
 
 
-def strokes(system: System, settings: ReciprocatingAnalysis) -> np.ndarray:
+def strokes(model: Model, settings: ReciprocatingAnalysis) -> np.ndarray:
     """Amplitude of the first body over the second one, relative to that given, (n_interfaces,).
 
     Negative where the second one moves.
@@ -65,10 +68,10 @@ def strokes(system: System, settings: ReciprocatingAnalysis) -> np.ndarray:
         If both bodies of an interface of several move alike, or not at all.
     """
     given = 4 * settings.amplitude * settings.frequency
-    at_rest = given if system.model.is_pair else 0.0
-    each = [one.motion.velocity for one in system.model.interfaces]
+    at_rest = given if model.is_pair else 0.0
+    each = [one.motion.velocity for one in model.interfaces]
     found = np.array([at_rest if velocity is None else velocity for velocity in each]) / given
-    for interface, stroke in zip(system.model.interfaces, found, strict=True):
+    for interface, stroke in zip(model.interfaces, found, strict=True):
         if abs(stroke) < _AT_REST:
             raise CaseError(
                 f"{interface.table}: its bodies do not slide on each other; every contact of a "
@@ -77,14 +80,19 @@ def strokes(system: System, settings: ReciprocatingAnalysis) -> np.ndarray:
     return found
 
 
+def stroke_ends(settings: ReciprocatingAnalysis) -> np.ndarray:
+    """Ends of stroke parts of equal duration, shape (positions + 1,) [m]."""
+    parts = np.arange(settings.positions + 1) / settings.positions
+    return settings.amplitude * np.sin(np.pi * (parts - 0.5))
+
+
 def positions(system: System, settings: ReciprocatingAnalysis) -> list[Position]:
     """Midpoints of stroke parts of equal duration, from one end to the other.
 
     Time shares and mean speeds reproduce the period and the length of the stroke exactly. Without
     friction in the section both sliding directions are equivalent; otherwise both are listed.
     """
-    count, relative = settings.positions, strokes(system, settings)
-    ends = settings.amplitude * np.sin(np.pi * (np.arange(count + 1) / count - 0.5))
+    count, relative = settings.positions, strokes(system.model, settings)
     directions = (1, -1) if system.traction is not system.trace else (1,)
     return [
         Position(
@@ -95,7 +103,7 @@ def positions(system: System, settings: ReciprocatingAnalysis) -> list[Position]
             system=moved(system, float(start + end) / 2 * relative, direction),
         )
         for direction in directions
-        for start, end in itertools.pairwise(ends)
+        for start, end in itertools.pairwise(stroke_ends(settings))
     ]
 
 
@@ -117,12 +125,7 @@ def moved(system: System, offsets: np.ndarray, direction: int) -> System:
     """
     model, contacts = system.model, system.contacts
     with system.phases("pair"):
-        each = [
-            _moved(system, interface, pairing, float(offset))
-            for interface, pairing, offset in zip(
-                model.interfaces, contacts.each, offsets, strict=True
-            )
-        ]
+        each = moved_contacts(model, system.comm, system.elastic.kinematics, contacts, offsets)
     pairings, bases = zip(*each, strict=True)
     there = replace(contacts, each=pairings)
     slides = joined_sliding(
@@ -161,25 +164,30 @@ def moved(system: System, offsets: np.ndarray, direction: int) -> System:
     )
 
 
-def _moved(
-    system: System, interface: Interface, pairing: Pairing, offset: float
-) -> tuple[Pairing, Basis]:
-    """Contact points and pressure space of an interface, its first body moved along x [m]."""
-    face_1, face_2 = (side.face for side in pairing.sides)
-    along = np.eye(face_1.nodes.shape[-1])[0]
-    face_1 = replace(face_1, nodes=face_1.nodes + offset * along)
-    given = system.model, interface, system.comm, system.elastic.kinematics
-    found, basis = contact_points(*given, face_1, face_2)
-    if found.unpaired > pairing.unpaired + _UNPAIRED:
-        where, body = "motion.amplitude", "body 1"
-        if not system.model.is_pair:
-            where, body = interface.table, system.model.bodies[interface.bodies[0]].name
-        raise CaseError(
-            f"{where}: {found.unpaired:.2%} of {interface.faces[0]} leaves "
-            f"{interface.faces[1]} where {body} is moved by {offset:.4g} m; a longer face of "
-            "body 2 is needed"
-        )
-    return found, basis
+def moved_contacts(
+    model: Model, comm, kinematics: Kinematics, contacts: Contacts, offsets: np.ndarray
+) -> list[tuple[Pairing, Basis]]:
+    """Contact points and pressure space of each interface of bodies moved along x.
+
+    Offsets and errors as in `moved`. Every rank calls.
+    """
+    result = []
+    for interface, pairing, offset in zip(model.interfaces, contacts.each, offsets, strict=True):
+        face_1, face_2 = (side.face for side in pairing.sides)
+        along = np.eye(face_1.nodes.shape[-1])[0]
+        face_1 = replace(face_1, nodes=face_1.nodes + offset * along)
+        found, basis = contact_points(model, interface, comm, kinematics, face_1, face_2)
+        if found.unpaired > pairing.unpaired + _UNPAIRED:
+            where, body = "motion.amplitude", "body 1"
+            if not model.is_pair:
+                where, body = interface.table, model.bodies[interface.bodies[0]].name
+            raise CaseError(
+                f"{where}: {found.unpaired:.2%} of {interface.faces[0]} leaves "
+                f"{interface.faces[1]} where {body} is moved by {offset:.4g} m; a longer face of "
+                "body 2 is needed"
+            )
+        result.append((found, basis))
+    return result
 
 
 def _sliding(system: System, interface: Interface, pairing: Pairing, direction: int) -> Sliding:

@@ -40,8 +40,8 @@ from ..points.contact_points import (
 from ..points.face_regions import divided_faces, require_regions
 from ..points.probe_points import probe_points
 from ..points.worn_geometry import WornGeometry
-from .cached_bodies import CachedBodies
-from .rigid_modes import dead_load, dead_resultant, load_direction, rigid_modes
+from .cached_bodies import CachedBodies, glued_pairings
+from .rigid_modes import dead_load, dead_resultant, fluid_pressure, load_direction, rigid_modes
 from .setup_cache import SetupCache, inputs
 from .system import System
 from .thermal_system import (
@@ -132,22 +132,23 @@ def build(
     )
 
 
-def check_contact_points(model: Model, comm) -> None:
-    """Mesh and pair a model as a run does, to detect errors in either step. Every rank calls.
-
-    Bodies without supports must be held by their contacts.
+def contacts_of(model: Model, comm) -> tuple[Contacts, RigidHolder]:
+    """Contact points and holders of a model, meshed and paired as for a run. Every rank calls.
 
     Raises
     ------
     CaseError
+        If the bodies cannot be meshed or paired, or heat cannot be carried along.
     """
     kinematics = kinematics_of(model.kinematics, model.thickness, model.sector)
     bodies = _meshed(model, comm, None, None)
     contacts, _ = _paired(model, comm, kinematics, bodies, None)
     require_passing(model, bodies, contacts)
+    glued_pairings(model, comm, kinematics, bodies)
+    fluid_pressure(model, contacts)
     without_loads = np.zeros(len(model.bodies))
     driven = rigid_modes(model.holders, contacts, lambda motion: without_loads)
-    require_carried(model, contacts, hold(contacts, contacts.normals, driven))
+    return contacts, hold(contacts, contacts.normals, driven)
 
 
 def require_carried(model: Model, contacts: Contacts, holder: RigidHolder) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ...bulk.bodies import Bodies
 from ...bulk.heat.conduction import Conduction
+from ...bulk.heat.even_paths import EvenPaths
 from ...bulk.heat.heat_equation import ThermalMaterial, conduction
 from ...bulk.heat.passage import Passage
 from ...bulk.heat.varying import (
@@ -22,7 +23,7 @@ from ...bulk.heat.walls import require_swept
 from ...bulk.mechanics.elasticity import Elasticity
 from ...bulk.mechanics.thermal_forces import ThermalForces
 from ...bulk.solver_choice import SolverChoice
-from ...bulk.spaces import Spaces
+from ...bulk.spaces import Spaces, lagrange_spaces
 from ...contact.operators.condensation import bath_matrix, condense_heat
 from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.operators.face_nodes import FaceNodes
@@ -294,6 +295,8 @@ def require_passing(model: Model, bodies: Bodies, contacts: Contacts) -> None:
     of_kind = [(m.conductivity, m.conductivity_factor, m.capacity) for m in own.materials.values()]
     kinds = {part: of_kind.index(kind) for part, kind in zip(own.parts, of_kind, strict=True)}
     require_swept(bodies, passage, kinds, (*model.symmetry, *own.rollers))
+    if passage.spread:
+        EvenPaths(bodies, lagrange_spaces(bodies, 1), passage)  # needs rows of cells
 
 
 def _passing_speed(motion: Motion) -> float:

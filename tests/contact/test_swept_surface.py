@@ -86,7 +86,8 @@ def test_points_away_from_the_ends():
     known = (np.abs(x) < 0.5 * length(y) / 2) & (np.abs(y / HALF - 0.5) < 0.25)
     assert (away == known).mean() > 0.97
     moved = SimpleNamespace(
-        on_body_1=pairing.on_body_1 + [REACH, 0, 0], on_body_2=pairing.on_body_2 + [REACH, 0, 0]
+        carrying=SimpleNamespace(points=pairing.on_body_1 + [REACH, 0, 0]),
+        opposite=SimpleNamespace(points=pairing.on_body_2 + [REACH, 0, 0]),
     )
     assert grid.inner(moved, REACH, 0.9).sum() < grid.inner(pairing, 0.0, 0.9).sum()
 
@@ -102,10 +103,8 @@ def test_a_stroke_normal_to_the_face():
     face = SimpleNamespace(normals=normals, name="wall")
     wall = SimpleNamespace(
         weights=pairing.weights,
-        sides=(
-            SimpleNamespace(face=face),
-            SimpleNamespace(face=face, facet=side.facet, t=side.t),
-        ),
+        carrying=SimpleNamespace(face=face),
+        opposite=SimpleNamespace(face=face, facet=side.facet, t=side.t),
     )
     with pytest.raises(CaseError, match="along x is normal to the contact face wall"):
         swept_surface(wall, REACH, (1e-3, 1e-3))

@@ -20,7 +20,7 @@ def close(value, rel=1e-6):
 def placed(*positions):
     """Something like a pairing, with contact points at lengths along the face of body 2."""
     places = np.array(positions, dtype=float)
-    return SimpleNamespace(sides=(None, SimpleNamespace(position=places)))
+    return SimpleNamespace(opposite=SimpleNamespace(position=places))
 
 
 def test_the_grid_covers_what_is_touched():

@@ -14,6 +14,8 @@ from thermowear.geometry.mesh.tagged import TaggedMesh
 from thermowear.geometry.reading.export import write_mesh
 
 MODELS = ("plane-strain", "plane-stress", "axisymmetric", "3d")
+ALL = ("initial", "steady", "transient", "deep", "reciprocating", "fretting")
+"""Analyses; ``"deep"`` is a running-in whose meshes follow the wear."""
 CELLS = {2: "quadrilateral", 3: "hexahedron"}
 _CORNERS = {
     2: ((0, 0), (1, 0), (1, 1), (0, 1)),
@@ -34,6 +36,7 @@ METRIC = {
     "density": (1.0, "kg/m^3"),
     "heat": (1.0, "J/(kg K)"),
     "time": (1.0, "s"),
+    "frequency": (1.0, "Hz"),
 }
 """Unit of each kind: its size in SI, for temperatures with the zero, and its name."""
 _BTU, _FOOT, _POUND, _F = 1055.05585262, 0.3048, 0.45359237, 5 / 9
@@ -254,7 +257,13 @@ def random_scene(
     """
     rng = np.random.default_rng(seed)
     model = str(rng.choice(models or MODELS))
-    analysis, dim = str(rng.choice(analyses)), 3 if model == "3d" else 2
+    analysis = str(rng.choice(analyses))
+    cycles = analysis in ("reciprocating", "fretting")
+    if cycles and model == "axisymmetric":
+        model = "plane-strain"
+    dim = 3 if model == "3d" else 2
+    if cycles:
+        given = {"hot": False, "tilting": False} | given
     hot, pads = given.get("hot", bool(rng.random() < 0.5)), pads or int(rng.integers(1, 3))
     unit, most = 1e-2, 3 if dim == 3 else 5
     start = 3.0 * unit if model == "axisymmetric" else -unit
@@ -280,6 +289,7 @@ def random_scene(
     lines = [np.append(np.concatenate(parts), edges[-1]), *across, np.linspace(-low, 0, 3)]
     plate = Block("plate", grid(*lines), tuple(np.cumsum(counts).tolist()))
     tables = _tables(rng, model, analysis, hot, pads)
+    _histories(rng, tables)
     tilting = bool(rng.random() < 0.4)
     if given.get("tilting", tilting) and model.startswith("plane"):
         for block, holder in zip(blocks, tables["holders"].values(), strict=True):
@@ -291,6 +301,30 @@ def random_scene(
     if not given.get("sliding", True):
         del tables["motions"], tables["contact"]
     return Scene(model, (*blocks, plate), tables, METRIC, 0.01 * rng.uniform(1, 3))
+
+
+def _histories(rng, tables: dict[str, Any]) -> None:
+    """Make the tables those of deep wear or of repeated motions, where these are asked for."""
+    kind, rates = tables["analysis"]["type"], tables["wear"].values()
+    if kind == "deep":
+        tables["analysis"] = {"type": "transient", "tolerance": 1e-2}
+        tables["analysis"]["end_time"] = ("time", rng.uniform(20, 60))
+        for law in rates:
+            law["coefficient"] = (law["coefficient"][0], 50 * law["coefficient"][1])
+        tables["wear"]["update"] = 2e-3
+    elif kind == "reciprocating":
+        stroke = {"amplitude": ("coordinate", 1e-3 * rng.uniform(0.3, 0.8))}
+        tables["motions"] = {"plate": stroke | {"frequency": ("frequency", 2.0)}}
+        tables["analysis"] |= {"cycles": 2000, "positions": int(rng.integers(2, 5))}
+    elif kind == "fretting":
+        del tables["motions"]
+        for holder in tables["holders"].values():
+            away = ("coordinate", 1e-6 * rng.uniform(0.1, 3))
+            places = [("coordinate", 0.0), away, ("coordinate", -away[1]), ("coordinate", 0.0)]
+            times = [("time", float(t)) for t in range(4)]
+            holder["history"] = {"time": times, "tangential_displacement": places}
+        tables["wear"]["cycles"] = 100
+        tables["analysis"]["increments"] = 2
 
 
 def _material(rng, hot: bool) -> dict[str, Any]:

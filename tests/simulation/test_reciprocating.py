@@ -89,7 +89,7 @@ def test_a_moved_body_is_where_it_should_be():
 
 def test_a_stroke_beyond_the_face_of_the_strip_is_a_fault():
     """requirement: one line that names the key and says what to do."""
-    message = r"motion.amplitude: .*leaves strip_face.*longer face of body 2"
+    message = r"motion.amplitude: .*leaves strip_face.*longer face strip_face is needed"
     with pytest.raises(tw.CaseError, match=message):
         stroke_of(case_of({"motion.amplitude": "6 mm"}))
 

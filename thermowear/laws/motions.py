@@ -32,6 +32,11 @@ class RigidMotion:
     rotation: np.ndarray
     pivot: np.ndarray
 
+    @property
+    def reversed(self) -> RigidMotion:
+        """Opposite motion."""
+        return RigidMotion(-self.translation, -self.rotation, self.pivot)
+
     def at(self, points: np.ndarray) -> np.ndarray:
         """Displacement of points per unit of the motion.
 

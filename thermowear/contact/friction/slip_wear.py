@@ -160,7 +160,7 @@ def _shift_per_slip(pairing: Pairing, side: int) -> float:
 def _profile(pairing: Pairing, weighted: np.ndarray, shift_per_slip: float) -> WornProfile:
     """Worn profile at one interface in a plane."""
     areas = weighted.sum(axis=0)
-    return WornProfile((pairing.position @ weighted) / areas, areas, shift_per_slip)
+    return WornProfile((pairing.carrying.position @ weighted) / areas, areas, shift_per_slip)
 
 
 @dataclass(frozen=True)

@@ -114,9 +114,9 @@ def worn_surface(pairing: Pairing, weighted, shift_per_slip: float) -> WornSurfa
         If the face cannot be laid out on a plane.
     """
     middle, frame = middle_in_space(pairing)
-    if (pairing.normals @ frame.pole).min() < _FLATTEST:
+    if (pairing.outward @ frame.pole).min() < _FLATTEST:
         raise CaseError(
-            f"geometry: the contact face {pairing.sides[0].face.name} turns by more than 84° from "
+            f"geometry: the contact face {pairing.carrying.face.name} turns by more than 84° from "
             "its mean normal; fretting wear in space needs faces that turn less"
         )
     areas = np.asarray(weighted.sum(axis=0)).ravel()

@@ -266,7 +266,7 @@ class FullContact(ContactEquations):
 def _coordinates(pairing: Pairing) -> np.ndarray:
     """Coordinates of the contact points: position along a face, principal axes of a surface."""
     if pairing.points.shape[1] == 2:
-        return pairing.position[:, None]
+        return pairing.carrying.position[:, None]
     centred = pairing.points - pairing.points.mean(axis=0)
     return centred @ np.linalg.svd(centred.T @ centred)[2][:2].T
 

@@ -168,7 +168,7 @@ def on_every_facet(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray
     share : ndarray
         Sums to one at each point.
     """
-    side, s = pairing.carrying, pairing.position
+    side, s = pairing.carrying, pairing.carrying.position
     if side.face.dim == 2:
         return _on_every_part(pairing)
     inner = np.arange(1, len(s) - 1)

@@ -299,8 +299,8 @@ def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, f
             start = _edge(pairing, pressure, zone[::-1], part)
         if after < len(pressure):
             end = _edge(pairing, pressure, zone, part)
-        zones.append((float(start), float(end)))
-    return zones
+        zones.append((float(min(start, end)), float(max(start, end))))
+    return sorted(zones)
 
 
 def _edge(pairing: Pairing, pressure: np.ndarray, zone: np.ndarray, part: float) -> float:

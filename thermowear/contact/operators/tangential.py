@@ -129,17 +129,17 @@ def _travel_in_space(pairing: Pairing, motion: RigidMotion) -> np.ndarray:
 
 
 def middle_in_space(pairing: Pairing) -> tuple[np.ndarray, TangentFrame]:
-    """Middle of a face in space (3,), and its frame by the mean normal."""
+    """Middle of a face in space (3,), and its frame by the mean outward normal."""
     middle = pairing.weights @ pairing.points / pairing.weights.sum()
-    return middle, frame_in_space(pairing.normals, pairing.weights)
+    return middle, frame_in_space(pairing.outward, pairing.weights)
 
 
 def _middle(pairing: Pairing) -> tuple[np.ndarray, np.ndarray]:
-    """Middle of a face in the plane, and its mean tangent along increasing positions."""
+    """Middle of a carrying face in the plane, and its mean tangent along increasing positions."""
     mean = pairing.weights @ pairing.normals
     along = tangents(mean[None])[0, 0] / np.linalg.norm(mean)
-    first, last = np.argmin(pairing.position), np.argmax(pairing.position)
-    onwards = (pairing.points[last] - pairing.points[first]) @ along
+    position = pairing.carrying.position
+    onwards = (pairing.points[position.argmax()] - pairing.points[position.argmin()]) @ along
     middle = pairing.weights @ pairing.points / pairing.weights.sum()
     return middle, along if onwards >= 0.0 else -along
 

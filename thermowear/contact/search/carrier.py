@@ -22,23 +22,26 @@ middle of its facet."""
 _CLOSE = 0.5
 """Part of this distance within which rims of both faces coincide."""
 _ALIKE = 1e-6
-"""Relative difference of lengths that count as equal, and that of normals."""
+"""Relative difference of values that count as equal, and that of normals."""
 
 
 def carrying_side(face_1: Face | Surface, face_2: Face | Surface) -> int:
     """Side (0 or 1) of the face whose facets carry the contact points.
 
     That with the longer rim within the other face; of equal ones that with more facets, the convex
-    one, and that whose mean normal points towards the last negative coordinate.
+    one, that which wears more, on both sides of a disk between pads the same one, and that whose
+    mean normal points towards the last negative coordinate.
     """
-    lengths = _length_within(face_1, face_2), _length_within(face_2, face_1)
-    if abs(lengths[0] - lengths[1]) > _ALIKE * max(lengths):
-        return int(lengths[1] > lengths[0])
-    if len(face_1.nodes) != len(face_2.nodes):
-        return int(len(face_2.nodes) > len(face_1.nodes))
-    bulges = _bulge(face_1), _bulge(face_2)
-    if abs(bulges[0] - bulges[1]) > _ALIKE:
-        return int(bulges[1] > bulges[0])
+    each = (face_1, face_2), (face_2, face_1)
+    within, wear = [_length_within(*both) for both in each], [_wear(own) for own, _ in each]
+    for (first, second), scale in (
+        (within, max(within)),
+        ([len(own.nodes) for own, _ in each], 0.0),
+        ([_bulge(own) for own, _ in each], 1.0),
+        (wear, max(wear)),
+    ):
+        if abs(first - second) > _ALIKE * scale:
+            return int(second > first)
     apart = _mean_normal(face_2) - _mean_normal(face_1)
     differing = np.flatnonzero(np.abs(apart) > _ALIKE)
     return int(len(differing) > 0 and apart[differing[-1]] < 0.0)
@@ -68,6 +71,13 @@ def _length_within(face: Face | Surface, other: Face | Surface) -> float:
         return float(len(facet))
     corners = face.corner_points[facet[:, None], ends]
     return float(np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1).sum())
+
+
+def _wear(face: Face | Surface) -> float:
+    """Mean softness by wear, by the size of the facets; 0 without wear."""
+    if not face.wears:
+        return 0.0
+    return float(np.average(face.softness_at(np.arange(len(face.nodes))), weights=face.sizes))
 
 
 def _mean_normal(face: Face | Surface) -> np.ndarray:

@@ -97,6 +97,20 @@ class Contacts:
         return _concatenated([start + p.carrying.facet for start, p in parts])
 
     @cached_property
+    def carriers(self) -> np.ndarray:
+        """Side (0 or 1) of the face of each interface that carries the points."""
+        return np.array([pairing.carrier for pairing in self.each])
+
+    def by_side(self, values: np.ndarray) -> np.ndarray:
+        """Values of the first and of the second faces from those of the carrying and of the others.
+
+        By interface or by point, (2, n_interfaces) or (2, n).
+        """
+        each = values.shape[1] == len(self.each)
+        second = self.carriers if each else self.per_point(self.carriers)
+        return np.where(second == 0, values, values[::-1])
+
+    @cached_property
     def in_space(self) -> bool:
         """True for bodies in space."""
         return isinstance(self.each[0].sides[0].face, Surface)

@@ -74,8 +74,6 @@ class Pairing:
     ----------
     points : ndarray, shape (n, gdim) [m]
         Points on the common face.
-    position : ndarray, shape (n,)
-        Arc length along the face of body 1 from its first end [m]; NaN on a surface.
     weights : ndarray, shape (n,)
         Area of the common face at each point [m²].
     normals : ndarray, shape (n, gdim)
@@ -99,7 +97,6 @@ class Pairing:
     """
 
     points: np.ndarray
-    position: np.ndarray
     weights: np.ndarray
     normals: np.ndarray
     gap: np.ndarray
@@ -116,12 +113,21 @@ class Pairing:
         return self.sides[self.carrier]
 
     @property
+    def opposite(self) -> PairedFace:
+        """Points on the other face."""
+        return self.sides[1 - self.carrier]
+
+    @property
+    def outward(self) -> np.ndarray:
+        """Unit normals of the common face, outward from the carrying body, shape (n, gdim)."""
+        return -self.normals if self.carrier else self.normals
+
+    @property
     def exchanged(self) -> Pairing:
         """Pairing of the same points with the bodies in the other order."""
         first, second = self.sides
         return replace(
             self,
-            position=second.position,
             normals=-self.normals,
             share=1.0 - self.share,
             sides=(second, first),
@@ -131,8 +137,16 @@ class Pairing:
 
     @property
     def extent(self) -> float:
-        """Size of the face of body 1 [m]."""
-        return self.sides[0].face.extent
+        """Size of the carrying face [m]."""
+        return self.carrying.face.extent
+
+    @property
+    def position(self) -> np.ndarray:
+        """Arc length along the face of body 1 from its first end, shape (n,), NaN on a surface [m].
+
+        Decreasing where body 2 carries the points, along whose face their order is.
+        """
+        return self.sides[0].position
 
     @property
     def on_body_1(self) -> np.ndarray:
@@ -145,9 +159,16 @@ class Pairing:
         return self.sides[1].points
 
     def locate(self, position) -> np.ndarray:
-        """Coordinates of positions along the face of a plane body, shape (n, 2) [m]."""
-        columns = [np.interp(position, self.position, x) for x in self.points.T]
+        """Coordinates of positions along the face of a plane body 1, shape (n, 2) [m]."""
+        order = np.argsort(self.position, kind="stable")
+        columns = [np.interp(position, self.position[order], x[order]) for x in self.points.T]
         return np.column_stack(columns)
+
+
+def with_carrying_face(pairing: Pairing, face: Face | Surface) -> Pairing:
+    """Pairing of the same points with another place of the carrying face."""
+    own, other = replace(pairing.carrying, face=face), pairing.opposite
+    return replace(pairing, sides=(other, own) if pairing.carrier else (own, other))
 
 
 def pair(
@@ -231,11 +252,10 @@ def paired(
         pieces = replace(pieces, weight=pieces.weight * share[facet])
         weights, covered = weights * share[facet], covered * share
     unpaired = 1.0 - float(covered @ face_1.sizes / face_1.sizes.sum())
-    position = face_1.position(facet, t)
     groups, point = _groups(face_1, facet, t, face_2.group_at(pairs.facet)), pieces.point
     if point is None:
         # on a curve by arc length: both ends of a closed one coincide in space
-        places = on_face if isinstance(face_1, Surface) else position[:, None]
+        places = on_face if isinstance(face_1, Surface) else face_1.position(facet, t)[:, None]
         point = _merged(places, _COINCIDENCE_TOLERANCE * face_1.extent, groups)
     _, first = np.unique(point, return_index=True)
     summed = np.column_stack([np.bincount(point, n) for n in pairs.normals.T])
@@ -246,7 +266,6 @@ def paired(
     )
     return Pairing(
         points=on_common[first],
-        position=position[first],
         weights=np.bincount(point, weights),
         normals=normals,
         gap=pairs.gap[first],

@@ -1,7 +1,7 @@
-"""Worn profile of a body in space, on which the other one reciprocates along x.
+"""Worn profile of a body in space, on which the carrying one reciprocates along x.
 
 The depth is piecewise bilinear on rows along the stroke: each row reaches from the first to the
-last place that the face of body 1 passes over there. Rows of a face with parallel ends are those of
+last place that the carrying face passes over there. Rows of a face with parallel ends are those of
 a section, see `track`.
 """
 
@@ -34,7 +34,7 @@ class FaceOutline:
     Attributes
     ----------
     across : ndarray, shape (3,)
-        Unit vector across the stroke and the mean normal of body 2.
+        Unit vector across the stroke and the mean normal of the swept face.
     rows : ndarray, shape (n_rows,)
         Positions of the rows along `across`, equally spaced [m].
     starts, ends : ndarray, shape (n_rows,)
@@ -75,12 +75,12 @@ class FaceOutline:
 
 @dataclass(frozen=True)
 class SweptSurface:
-    """Grid of the worn profile over the swept part of the face of body 2.
+    """Grid of the worn profile over the swept part of a face.
 
     Attributes
     ----------
     outline : FaceOutline
-        Face of body 1 in the middle of the stroke.
+        Carrying face in the middle of the stroke.
     reach : float
         Length of the stroke in either direction [m].
     columns : int
@@ -108,7 +108,7 @@ class SweptSurface:
 
     def hats(self, pairing: Pairing, length: float = 0.0) -> sp.csr_array:
         """Values of the hat functions at contact points, see `track.StrokeGrid.hats`."""
-        points = pairing.on_body_2
+        points = pairing.opposite.points
         if length == 0.0:
             return self._values(points)
         steps = length * ((np.arange(STEPS) + 0.5) / STEPS - 0.5)
@@ -122,12 +122,12 @@ class SweptSurface:
         ----------
         pairing : Pairing
         offset : float
-            Displacement of the face of body 1 [m].
+            Displacement of the carrying face [m].
         part : float
             Part of the face and of the track that is taken, in both directions.
         """
-        on_1 = self.outline.coordinates(pairing.on_body_1 - offset * _STROKE)
-        on_2 = self.outline.coordinates(pairing.on_body_2, self.reach)
+        on_1 = self.outline.coordinates(pairing.carrying.points - offset * _STROKE)
+        on_2 = self.outline.coordinates(pairing.opposite.points, self.reach)
         last = len(self.outline.rows) - 1
         places = (on_1[0] / last, on_1[1], on_2[1])
         return np.all([np.abs(2 * place - 1) <= part for place in places], axis=0)
@@ -146,7 +146,7 @@ class SweptSurface:
 
 
 def swept_surface(pairing: Pairing, reach: float, spacing: tuple[float, float]) -> SweptSurface:
-    """Build the grid on the part of the face of body 2 that body 1 passes over.
+    """Build the grid on the part of a face that the carrying one passes over.
 
     Areas are those of the contact points: a pressure that is uniform across the stroke wears all
     rows alike.
@@ -165,7 +165,7 @@ def swept_surface(pairing: Pairing, reach: float, spacing: tuple[float, float]) 
     CaseError
         If the stroke is normal to the face.
     """
-    second = pairing.sides[1]
+    second = pairing.opposite
     normals = second.face.normals(second.facet, second.t)
     mean = pairing.weights @ normals
     pole = mean / np.linalg.norm(mean)
@@ -173,7 +173,7 @@ def swept_surface(pairing: Pairing, reach: float, spacing: tuple[float, float]) 
     if np.linalg.norm(across) < _LEAST_ACROSS:
         raise CaseError(
             f"motion: reciprocating along x is normal to the contact face "
-            f"{pairing.sides[0].face.name}; it must slide along it"
+            f"{pairing.carrying.face.name}; it must slide along it"
         )
     across = across / np.linalg.norm(across) * np.sign(across[np.abs(across).argmax()])
     outline = _outline(pairing, across, spacing[1])
@@ -182,7 +182,7 @@ def swept_surface(pairing: Pairing, reach: float, spacing: tuple[float, float]) 
     within = np.full(columns, 1.0 / (columns - 1))
     within[[0, -1]] /= 2
     rows = outline.areas(reach) * _covered(pairing, outline, pole, np.abs(normals @ pole))
-    level = float(pairing.weights @ pairing.on_body_2 @ np.cross(_STROKE, across))
+    level = float(pairing.weights @ pairing.opposite.points @ np.cross(_STROKE, across))
     areas = np.outer(rows, within).ravel()
     return SweptSurface(outline, reach, columns, level / pairing.weights.sum(), areas)
 
@@ -190,7 +190,7 @@ def swept_surface(pairing: Pairing, reach: float, spacing: tuple[float, float]) 
 def _covered(
     pairing: Pairing, outline: FaceOutline, pole: np.ndarray, slopes: np.ndarray
 ) -> np.ndarray:
-    """Area of body 2 under the quadrature points relative to that of the outline, (n_rows,).
+    """Area of the swept face under the quadrature points over that of the outline, (n_rows,).
 
     Parameters
     ----------
@@ -199,9 +199,9 @@ def _covered(
     pole : ndarray, shape (3,)
         Unit normal of the plane of the outline.
     slopes : ndarray, shape (n,)
-        Cosine between the pole and the normal of body 2 at the contact points.
+        Cosine between the pole and the normal of the swept face at the contact points.
     """
-    face, pieces = pairing.sides[0].face, pairing.pieces
+    face, pieces = pairing.carrying.face, pairing.pieces
     at = pieces.facet, pieces.t
     weights = pieces.weight * face.stretch(*at) * np.abs(face.normals(*at) @ pole)
     weights = weights / slopes[pieces.point]
@@ -215,8 +215,8 @@ def _covered(
 
 
 def _outline(pairing: Pairing, across: np.ndarray, spacing: float) -> FaceOutline:
-    """Outline of the facets of body 1 that have contact points."""
-    face = pairing.sides[0].face
+    """Outline of the facets that have contact points."""
+    face = pairing.carrying.face
     assert isinstance(face, Surface)
     lines = _border(face, np.unique(pairing.pieces.facet))
     place, x = lines @ across, lines[..., 0]

@@ -1,4 +1,4 @@
-"""Worn profile of a body on which the other one reciprocates; in space see `swept_surface`.
+"""Worn profile of a body on which the carrying one reciprocates; in space see `swept_surface`.
 
 The depth is piecewise linear on a separate grid along the face, as the contact points differ in
 every position. A position represents a segment of the stroke: the depth at a point is the mean over
@@ -23,7 +23,7 @@ from .swept_surface import STEPS, SweptSurface
 
 @dataclass(frozen=True)
 class StrokeGrid:
-    """Grid of the worn profile along the face of body 2.
+    """Grid of the worn profile along the face that does not carry the contact points.
 
     Attributes
     ----------
@@ -45,7 +45,7 @@ class StrokeGrid:
         length : float
             Length of the segment, centred at the points, over which means are taken [m].
         """
-        places = pairing.sides[1].position
+        places = pairing.opposite.position
         if length == 0.0:
             return hat_functions(self.position, places)
         steps = length * ((np.arange(STEPS) + 0.5) / STEPS - 0.5)
@@ -62,7 +62,7 @@ def hat_functions(knots: np.ndarray, places: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class StrokeGrids:
-    """Grids of the worn profiles of the second bodies of all interfaces, one after the other.
+    """Grids of the worn profiles of the swept bodies of all interfaces, one after the other.
 
     Attributes
     ----------
@@ -116,7 +116,7 @@ def track(
         Thickness of the bodies [m].
     """
     placed = [
-        (p.sides[1].position, length / 2) for p, length in zip(pairings, lengths, strict=True)
+        (p.opposite.position, length / 2) for p, length in zip(pairings, lengths, strict=True)
     ]
     first = min(s.min() - half for s, half in placed)
     last = max(s.max() + half for s, half in placed)

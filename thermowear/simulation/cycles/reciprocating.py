@@ -39,7 +39,7 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
 
     def rows_of(self, moment: Moment) -> list[HistoryRow | ContactRow]:
         system, state = self._system, moment.state
-        volumes, (on_1, on_2) = self._volumes(state.worn[0]), self._problem.split(state.worn)
+        volumes, deepest = self._volumes(state.worn[0]), self._deepest(state.worn)
         mean_speed = float(np.average(system.speed, weights=system.weights))
         cycle = self._problem.of_cycle(state.contact)
         row = HistoryRow(
@@ -53,8 +53,8 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
             approach=float(system.approaches @ cycle.motion),
             step=moment.step,
             error=moment.error,
-            max_wear_1=float((system.basis @ on_1).max()),
-            max_wear_2=float(on_2.max()),
+            max_wear_1=deepest[0],
+            max_wear_2=deepest[1],
             friction_power=float(cycle.power.sum()),
             friction_force=float(cycle.friction[0]) if system.model.is_pair else float("nan"),
             friction_torque=float("nan"),
@@ -82,7 +82,7 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
         ]
 
     def snapshot(self, moment: Moment) -> Snapshot:
-        """Contact and bodies at mid-stroke of body 1, and the worn track; every rank calls."""
+        """Contact and bodies at mid-stroke, and the worn track; every rank calls."""
         system, state = self._system, moment.state
         worn, rates = (
             self._at_points(v) for v in (state.worn, self._problem.rates(state.pressure))
@@ -93,7 +93,7 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
         return replace(found, track=self._worn_track(state))
 
     def _worn_track(self, state: InterfaceState) -> WornTrack:
-        """Worn depths and wear rates along the faces of the second bodies."""
+        """Worn depths and wear rates along the faces of the swept bodies."""
         grids, rates = self._problem.track.each, self._problem.rates(state.pressure)
         pairs = zip(self._system.contacts.each, grids, strict=True)
         x, y, z, area = np.concatenate([_places(pairing, grid) for pairing, grid in pairs]).T
@@ -141,23 +141,31 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
 
     def _at_points(self, depths: np.ndarray) -> np.ndarray:
         """Depths (or rates) of both bodies at the mid-stroke points, shape (2, n)."""
-        system, (on_1, on_2) = self._system, self._problem.split(depths)
+        system, (carried, swept) = self._system, self._problem.split(depths)
         hats = self._problem.track.hats(system.contacts)
-        return np.array([system.basis @ on_1, hats @ on_2])
+        return system.contacts.by_side(np.array([system.basis @ carried, hats @ swept]))
+
+    def _deepest(self, depths: np.ndarray) -> list[float]:
+        """Largest depth of the first and of the second bodies [m]."""
+        contacts, (carried, swept) = self._system.contacts, self._problem.split(depths)
+        parts = zip(contacts.ranges, self._problem.track.ranges, strict=True)
+        found = [[(self._system.basis[k] @ carried).max(), swept[j].max()] for k, j in parts]
+        return [float(of) for of in contacts.by_side(np.array(found).T).max(axis=1)]
 
     def _volumes(self, depths: np.ndarray) -> np.ndarray:
         """Integrals of depths (N,) over the faces, shape (2, n_interfaces) [m³]."""
         problem = self._problem
         ranges = problem.functions, problem.track.ranges
         sides = zip(problem.split(depths[None]), problem.areas, ranges, strict=True)
-        return np.array([[v[k] @ area[k] for k in own] for v, area, own in sides])
+        found = [[v[k] @ area[k] for k in own] for v, area, own in sides]
+        return self._system.contacts.by_side(np.array(found))
 
 
 def _places(pairing: Pairing, grid: StrokeGrid | SweptSurface) -> np.ndarray:
     """Coordinates and areas of the nodes of a grid, (n_nodes, 4); of a section only x [m, m²]."""
     if isinstance(grid, SweptSurface):
         return np.column_stack([grid.nodes, grid.areas])
-    face = pairing.sides[1].face
+    face = pairing.opposite.face
     ends = face.position(np.arange(len(face.nodes)), np.ones(len(face.nodes)))
     x = np.interp(
         grid.position,

@@ -1,7 +1,8 @@
 """Cycle-averaged contact and wear in reciprocating sliding.
 
-The wear of one cycle is small, so that depths are constant during a cycle. Body 1 loses W1 at its
-points x, body 2 loses W2 at its points ξ. At each position X_j the contact has the gap
+The wear of one cycle is small, so that depths are constant during a cycle. The carrying body, 1,
+loses W1 at its points x, the swept one, 2, loses W2 at its points ξ. At each position X_j the
+contact has the gap
 
     g0 + W1(x) + W2(x + X_j) + C_j p_j - R d_j,
 
@@ -48,15 +49,15 @@ from .unevenness import unevenness
 class ReciprocatingProblem(WearProblem):
     """Contact in all positions of the stroke, coupled by the worn depths.
 
-    Depths form one row of N values: coefficients of the first bodies, then nodal values of the
-    second ones. Pressures have one row per position, shape (J, m).
+    Depths form one row of N values: coefficients of the carrying bodies, then nodal values of the
+    swept ones. Pressures have one row per position, shape (J, m).
 
     Attributes
     ----------
     track : StrokeGrids
-        Grids of the depths of the second bodies.
+        Grids of the depths of the swept bodies.
     areas : tuple of ndarray, shape (m,) and (n_nodes,)
-        Areas of the depth values of the first and of the second bodies [m²].
+        Areas of the depth values of the carrying and of the swept bodies [m²].
     functions : tuple of slice
         Range of the coefficients of each interface.
     """
@@ -81,9 +82,7 @@ class ReciprocatingProblem(WearProblem):
         weighted = dense(system.contact.weighted)
         self.areas = weighted.sum(axis=0), self.track.areas
         self._unevenness = unevenness(system, stroke, self.track, self.functions)
-        self._spread = stroke_distribution(self._contacts, self.track, self._shares)[
-            list(system.laws)
-        ]
+        self._spread = stroke_distribution(self._contacts, self.track, self._shares)
 
     def _grid(
         self, system: System, stroke: list[Position], index: int, ratio: float
@@ -103,7 +102,7 @@ class ReciprocatingProblem(WearProblem):
         return swept_surface(pairing, reach, (max(part, apart), apart))
 
     def split(self, depths: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Coefficients of the first bodies, shape (m,), and values at the nodes of the second."""
+        """Coefficients of the carrying bodies, shape (m,), and nodal values of the swept ones."""
         m = self._contacts.gap.shape[1]
         return depths[0, :m], depths[0, m:]
 
@@ -210,6 +209,6 @@ class ReciprocatingProblem(WearProblem):
 
 
 def _length(pairing: Pairing) -> float:
-    """Length of the face of body 1; in space its size [m]."""
-    end = float(pairing.position.max())
+    """Length of the carrying face; in space its size [m]."""
+    end = float(pairing.carrying.position.max())
     return pairing.extent if np.isnan(end) else end

@@ -1,6 +1,7 @@
 """Discretised stroke of reciprocating bodies: positions, mean speeds and contact systems.
 
-The first body of each interface passes over the second one, all with one frequency and phase.
+The body that carries the points of an interface passes over the other one, all with one frequency
+and phase.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from ...contact.operators.pressure import Basis, dense, joined_bases, scaled
 from ...contact.operators.rigid_motion import Sliding, hold, joined_sliding, sliding
 from ...contact.operators.traces import gap_trace
 from ...contact.search.contacts import Contacts
-from ...contact.search.pairing import Pairing
+from ...contact.search.pairing import Pairing, with_carrying_face
 from ...contact.solvers.coupled_positions import CoupledContacts
 from ...contact.wear.track import StrokeGrids
 from ...errors import CaseError
@@ -139,12 +140,11 @@ def moved(system: System, offsets: np.ndarray, direction: int) -> System:
         for name in ("nominal_friction", "transverse_friction")
     )
     traction_direction = slides.traction_direction(there.normals, friction, transverse)
-    faces = (before.sides[0].face for before in contacts.each)
     still = replace(
         there,
         each=tuple(
-            replace(pairing, sides=(replace(pairing.sides[0], face=face), pairing.sides[1]))
-            for pairing, face in zip(pairings, faces, strict=True)
+            with_carrying_face(pairing, before.carrying.face)
+            for pairing, before in zip(pairings, contacts.each, strict=True)
         ),
     )
     return replace(
@@ -167,24 +167,25 @@ def moved(system: System, offsets: np.ndarray, direction: int) -> System:
 def moved_contacts(
     model: Model, comm, kinematics: Kinematics, contacts: Contacts, offsets: np.ndarray
 ) -> list[tuple[Pairing, Basis]]:
-    """Contact points and pressure space of each interface of bodies moved along x.
+    """Contact points and pressure space of each interface, its first body moved along x.
 
     Offsets and errors as in `moved`. Every rank calls.
     """
     result = []
     for interface, pairing, offset in zip(model.interfaces, contacts.each, offsets, strict=True):
-        face_1, face_2 = (side.face for side in pairing.sides)
-        along = np.eye(face_1.nodes.shape[-1])[0]
-        face_1 = replace(face_1, nodes=face_1.nodes + offset * along)
-        found, basis = contact_points(model, interface, comm, kinematics, face_1, face_2)
+        side, face = pairing.carrier, pairing.carrying.face
+        along = np.eye(face.nodes.shape[-1])[0] * (-1) ** side
+        there = with_carrying_face(pairing, replace(face, nodes=face.nodes + offset * along))
+        faces = (paired.face for paired in there.sides)
+        found, basis = contact_points(model, interface, comm, kinematics, *faces, carrier=side)
         if found.unpaired > pairing.unpaired + _UNPAIRED:
             where, body = "motion.amplitude", "body 1"
             if not model.is_pair:
                 where, body = interface.table, model.bodies[interface.bodies[0]].name
+            own, other = interface.faces[side], interface.faces[1 - side]
             raise CaseError(
-                f"{where}: {found.unpaired:.2%} of {interface.faces[0]} leaves "
-                f"{interface.faces[1]} where {body} is moved by {offset:.4g} m; a longer face of "
-                "body 2 is needed"
+                f"{where}: {found.unpaired:.2%} of {own} leaves {other} where {body} is moved by "
+                f"{offset:.4g} m; a longer face {other} is needed"
             )
         result.append((found, basis))
     return result

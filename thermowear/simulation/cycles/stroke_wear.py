@@ -38,7 +38,7 @@ class CycleContact:
 
 @dataclass(frozen=True)
 class FaceLaw:
-    """Wear law of the first or of the second face of an interface.
+    """Wear law of the carrying or of the swept face of an interface.
 
     Attributes
     ----------
@@ -63,13 +63,13 @@ class LocalWear:
     Attributes
     ----------
     faces : tuple of tuple of FaceLaw
-        Laws of the first, of the second faces or of both, by interface.
+        Laws of the carrying faces, and those of the swept ones, by interface.
     """
 
     faces: tuple[tuple[FaceLaw, ...], ...]
 
     def value(self, pressure: np.ndarray, last: object = None) -> np.ndarray:
-        """Local rates under coefficients of the pressure (J, m), shape (n_wearing, J, m) [m/s]."""
+        """Local rates under coefficients of the pressure (J, m), shape (2, J, m) [m/s]."""
         return self._each(pressure, "value")
 
     def slope(self, pressure: np.ndarray, last: object = None) -> Slope:
@@ -90,11 +90,12 @@ def local_wear(
     system: System, functions: tuple[slice, ...], speeds: np.ndarray, strokes: np.ndarray
 ) -> LocalWear:
     """Local wear of all faces at the mean speeds (J, 1) of the given stroke [m/s]."""
-    interfaces = list(zip(system.model.interfaces, functions, strokes, strict=True))
+    each = system.model.interfaces, system.contacts.carriers, functions, strokes
+    interfaces = list(zip(*each, strict=True))
 
-    def face(one: Interface, own: slice, stroke: float, side: int) -> FaceLaw:
-        wear = one.wear.get(side)
+    def face(one: Interface, carrier: int, own: slice, stroke: float, swept: int) -> FaceLaw:
+        wear = one.wear.get(abs(carrier - swept))
         law = wear.law if isinstance(wear, FaceWear) else None
         return FaceLaw(own, law, abs(stroke) * speeds, one.nominal_friction)
 
-    return LocalWear(tuple(tuple(face(*one, side) for one in interfaces) for side in system.laws))
+    return LocalWear(tuple(tuple(face(*one, swept) for one in interfaces) for swept in (0, 1)))

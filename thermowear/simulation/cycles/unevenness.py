@@ -2,7 +2,7 @@
 
 In the steady state the gap closes at the same rate wherever the faces touch, see
 `reciprocating_problem`. The ends of the faces are left out: at the turning points the edge of
-body 1 carries half the load, which no mesh resolves.
+the carrying body carries half the load, which no mesh resolves.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ _INNER = 0.9
 """Part of the faces that is compared."""
 
 Unevenness = Callable[[np.ndarray, np.ndarray], float]
-"""Largest relative deviation of wear rates from their mean, of the coefficients of the first bodies
-(m,) and the nodal values of the second ones (n_nodes,)."""
+"""Largest relative deviation of wear rates from their mean, of the coefficients of the carrying
+bodies (m,) and the nodal values of the swept ones (n_nodes,)."""
 
 
 def unevenness(
@@ -46,7 +46,8 @@ def unevenness(
     if system.contacts.in_space:
         return _by_closing(stroke, track)
     weighted = dense(system.contact.weighted)
-    places = (system.contacts.position @ weighted) / weighted.sum(axis=0)
+    position = np.concatenate([pairing.carrying.position for pairing in system.contacts.each])
+    places = (position @ weighted) / weighted.sum(axis=0)
     on_1 = [(own, places[own]) for own in functions]
     grids = zip(track.ranges, track.each, strict=True)
     on_2 = [(own, grid.position) for own, grid in grids if isinstance(grid, StrokeGrid)]
@@ -68,7 +69,12 @@ def _by_closing(stroke: list[Position], track: StrokeGrids) -> Unevenness:
         parts = zip(track.each, system.contacts, track.strokes, strict=True)
         for index, (grid, (pairing, points), ratio) in enumerate(parts):
             assert isinstance(grid, SweptSurface)
-            inner = np.flatnonzero(grid.inner(pairing, ratio * offset, _INNER)) + points.start
+            inner = (
+                np.flatnonzero(
+                    grid.inner(pairing, ratio * offset * (-1) ** pairing.carrier, _INNER)
+                )
+                + points.start
+            )
             rows.append((index, system.basis[inner], hats[inner]))
 
     def measure(rates_1: np.ndarray, rates_2: np.ndarray) -> float:

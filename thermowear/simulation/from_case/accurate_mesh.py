@@ -169,5 +169,9 @@ def _shape(result: Result) -> Value:
     interface = result.interface
     if np.isnan(interface.s).any():
         return Number(*2 * (float(result.summary["shape_range_m"]),))
-    pressing = np.where(interface.pressure > 0, interface.weight, 0.0)
-    return WornHeights(interface.s, interface.shape, pressing)
+    pressing, order = np.where(interface.pressure > 0, interface.weight, 0.0), []
+    for own in result.contacts.values() or [slice(None)]:
+        along = np.arange(len(pressing))[own]
+        order.append(along if interface.s[along[0]] <= interface.s[along[-1]] else along[::-1])
+    rows = np.concatenate(order)
+    return WornHeights(interface.s[rows], interface.shape[rows], pressing[rows])

@@ -223,14 +223,14 @@ def _missing_shape(system: System, before: WornGeometry, state: InterfaceState) 
         missing = contact.carried(contact.missing_shape, pairing)
         reached = np.any(state.worn[:, own] > 0.0, axis=0)
         if not contact.is_moved and not system.contacts.in_space and reached.any():
-            in_shape, x = gap_of_initial_shape(pairing), pairing.position
+            in_shape, x = gap_of_initial_shape(pairing), pairing.carrying.position
             missing = in_shape + np.interp(x, x[reached], (missing - in_shape)[reached])
         found.append(missing)
     return np.concatenate(found)
 
 
 def _kept_points(system: System, state: InterfaceState, renewed: Renewed) -> list[Rule] | None:
-    """Contact points to keep on the facets of the first bodies; None in a remeshed section."""
+    """Contact points to keep on the carrying facets; None in a remeshed section."""
     if renewed and not system.contacts.in_space:
         return None
     return [pairing.pieces for pairing in system.contacts.each]

@@ -189,7 +189,8 @@ def _unworn(system: System, keys: list[FaceKey]) -> WornGeometry:
                 depth=np.zeros((2, len(pairing.weights))),
                 missing_shape=pairing.gap - drawn,
                 lost=np.zeros(2),
-                pieces=pairing.pieces if isinstance(pairing.sides[0].face, Surface) else None,
+                pieces=pairing.pieces if system.contacts.in_space else None,
+                carrier=pairing.carrier,
             )
         )
     return WornGeometry(
@@ -214,7 +215,7 @@ def gap_of_initial_shape(pairing: Pairing) -> np.ndarray:
 def _along_directions(
     pairing: Pairing, directions: tuple[np.ndarray, ...], sides: list[int]
 ) -> tuple[Pairing, np.ndarray]:
-    """Pairing with points on body 2 projected along the node directions of the wearing sides.
+    """Pairing with points projected from the carrying face along the directions of wearing nodes.
 
     Returns
     -------
@@ -222,6 +223,10 @@ def _along_directions(
     gap : ndarray, shape (n,)
         Gap between the paired points along the normals [m].
     """
+    if pairing.carrier:
+        given = directions[::-1], [1 - side for side in sides]
+        found, gap = _along_directions(pairing.exchanged, *given)
+        return found.exchanged, gap
     first, second = pairing.sides
     recession = np.isin([0, 1], sides or [0, 1]).astype(float)
     toward = directions_between(pairing.sides, directions, recession)

@@ -88,7 +88,7 @@ class _FaceSize:
     """Dimensions of the bodies at an interface that limit the wear kept in its gap."""
 
     def __init__(self, pairing: Pairing, thickness: dict[int, float]):
-        side = pairing.sides[0]
+        side = pairing.carrying
         facets, self._first = np.unique(side.facet, return_index=True)
         self._lengths = side.face.lengths[facets]
         self._curvature = max(float(curvatures(s.face).max()) for s in pairing.sides)

@@ -83,7 +83,7 @@ def on_kept_faces(worn: WornGeometry, system: System, kept: Kept) -> WornGeometr
 def _renumbered(contact: WornContact, side: int, numbers: Renumbering) -> WornContact:
     """Data of an interface, one of whose faces, by side, has new numbers."""
     at, pieces = contact.at, contact.pieces
-    if side == 0:
+    if side == contact.carrier:
         assert pieces is not None
         facet, t = numbers.place(at[:, 0].astype(np.int64), at[:, 1:])
         at = np.column_stack([facet, t])

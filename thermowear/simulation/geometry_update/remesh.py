@@ -132,7 +132,7 @@ def _on_new_face(contact: WornContact, pairing: Pairing, index: int, new: NewFac
     side, at, depth = pairing.sides[index], contact.at, contact.depth.copy()
     assert isinstance(side.face, Face)
     depth[index] += _behind_former(side, new)
-    if index == 0:
+    if index == contact.carrier:
         at = new.at(along(pairing))
     carried = new.carried(contact.directions[index])
     held = np.zeros(len(carried), dtype=bool)

@@ -64,10 +64,22 @@ def groups_of_parts(model: Model, interface: Interface) -> dict[str, int]:
 
 
 def contact_points(
-    model: Model, interface: Interface, comm, kinematics: Kinematics, face_1, face_2
+    model: Model,
+    interface: Interface,
+    comm,
+    kinematics: Kinematics,
+    face_1,
+    face_2,
+    *,
+    carrier: int | None = None,
 ) -> tuple[Pairing, Basis]:
-    """Contact points, with the gap of the initial shape, and pressure space Ψ."""
-    pairing, basis = _points(model, interface, kinematics, face_1, face_2, comm=comm)
+    """Contact points, with the gap of the initial shape, and pressure space Ψ.
+
+    They are carried by the given side, or else by that which is chosen for these faces.
+    """
+    side = carrying_side(face_1, face_2) if carrier is None else carrier
+    given = model, interface, kinematics, face_1, face_2
+    pairing, basis = _points(*given, comm=comm, carrier=side)
     shape = interface.initial_shape
     if shape is not None:
         key = f"{interface.table if interface.name else 'geometry'}.initial_shape"
@@ -86,11 +98,17 @@ def worn_contact_points(
 ) -> tuple[Pairing, Basis]:
     """Contact points of worn faces after a motion of body 1 over body 2, with the unworn gap.
 
+    The side that carried them on the unworn faces carries them still.
+
     The gap is measured between points opposite along the directions of the mesh motion: a moved
     mesh opens it by exactly the depth that it loses, even where the faces are inclined to each
     other. They are where a mesh cannot follow the edge of the wear and the faces overlap by the
     depth not removed. Closest-point or normal projection would change the gap there.
     """
+    if worn.carrier:
+        given = model, interface, kinematics, worn.exchanged, motion.reversed
+        pairing, basis = worn_contact_points(*given, face_2, face_1)
+        return pairing.exchanged, basis
     face_1, face_2 = _by_walls(worn, (face_1, face_2))
     closer = replace(face_1, nodes=face_1.nodes + motion.at(face_1.nodes))
     if worn.pieces is None:
@@ -144,11 +162,10 @@ def _points(
     sliver: float = SLIVER,
     max_overhang: float = OVERHANG_TOLERANCE,
     comm=None,
+    carrier: int = 0,
 ) -> tuple[Pairing, Basis]:
     """Contact points of two faces, and pressure space Ψ; parameters as in `pair`."""
     degree = model.discretisation.degree
-    # worn faces are followed by the points of body 1
-    carrier = 0 if model.wears else carrying_side(face_1, face_2)
     if interface.pressure_degree == "lobatto":  # at the nodes of the facets
         if isinstance(face_1, Surface):
             raise CaseError(f"{interface.table}.pressure_degree: 'lobatto' is for sections")

@@ -60,17 +60,17 @@ def initial_gap(comm, path: str, pairing: Pairing, key: str) -> np.ndarray:
 def _gap_along(where: str, table: np.ndarray, position: np.ndarray) -> np.ndarray:
     """Gap by a shape given over the length along the face [m]."""
     s, shape = _curve(where, table)
-    length = position[-1]
+    first, length = position.min(), position.max()
     if max(s[-1], -s[0]) > _UNIT * length:
         raise CaseError(
             f"{where} ranges from s_m = {s[0]:.6g} to {s[-1]:.6g}, more than {_UNIT:g} "
             f"times the length of the contact face, {length:.6g} m; is it in metres?"
         )
     beyond = _BEYOND * length
-    if s[0] > position[0] + beyond or s[-1] < position[-1] - beyond:
+    if s[0] > first + beyond or s[-1] < length - beyond:
         raise CaseError(
             f"{where} ranges from s = {s[0]:.6g} to {s[-1]:.6g} m, the contact face from "
-            f"{position[0]:.6g} to {position[-1]:.6g} m"
+            f"{first:.6g} to {length:.6g} m"
         )
     height = scipy.interpolate.Akima1DInterpolator(s, shape, method="makima")(
         np.clip(position, s[0], s[-1])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import scipy
@@ -34,7 +34,7 @@ class WornContact:
     sizes : tuple of ndarray, shape (n_facets,)
         Lengths of the facets of both faces in the initial mesh [m].
     at : ndarray, shape (n_before,) or (n_before, 3)
-        Positions on the face of body 1 of the contact points before the last update, see `along`.
+        Positions on the carrying face of the contact points before the last update, see `along`.
     depth : ndarray, shape (2, n_before)
         Wear depth removed from the mesh behind each face at these points [m].
     missing_shape : ndarray, shape (n_before,)
@@ -44,6 +44,8 @@ class WornContact:
     pieces : Rule or None
         Quadrature of surfaces, and of sections with pointwise contact at the edge of the wear:
         contact points keep their positions on the facets. None where a section is paired again.
+    carrier : int
+        Side whose facets carry the contact points, see `Pairing`.
     renewed : dict of int to NewFace
         Faces redivided by the last update, by side. Their depth is that of the smooth curve through
         the nodes of the former face.
@@ -57,7 +59,22 @@ class WornContact:
     missing_shape: np.ndarray
     lost: np.ndarray
     pieces: Rule | None
+    carrier: int
     renewed: dict[int, NewFace] = field(default_factory=dict)
+
+    @property
+    def exchanged(self) -> WornContact:
+        """Interface with the bodies in the other order."""
+        return replace(
+            self,
+            directions=self.directions[::-1],
+            held=self.held[::-1],
+            sizes=self.sizes[::-1],
+            depth=self.depth[::-1],
+            lost=self.lost[::-1],
+            carrier=1 - self.carrier,
+            renewed={1 - side: new for side, new in self.renewed.items()},
+        )
 
     @property
     def is_moved(self) -> bool:
@@ -175,11 +192,11 @@ def _interpolated(before: np.ndarray, values: np.ndarray, after: np.ndarray) -> 
 
 
 def along(pairing: Pairing) -> np.ndarray:
-    """Positions of the contact points on the face of body 1.
+    """Positions of the contact points on the face that carries them.
 
     Facet plus parameter, shape (n,); on a surface the facet and both parameters, shape (n, 3).
     """
-    side = pairing.sides[0]
+    side = pairing.carrying
     if isinstance(side.face, Surface):
         return np.column_stack([side.facet, side.t])
     return side.facet + side.t

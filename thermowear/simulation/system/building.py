@@ -246,9 +246,12 @@ def _paired_faces(
     divided = divided_faces(model, interface, gathered)
     require_laws(model, interface, bodies, divided)
     faces = [replace(face, wears=bool(interface.wearing_in_place)) for face in divided]
-    if worn is None or not worn.contacts[index].is_moved:
+    if worn is None:
         return contact_points(model, interface, comm, kinematics, *faces)
-    moved = worn.contacts[index], worn.relative_motion(interface.bodies)
+    contact = worn.contacts[index]
+    if not contact.is_moved:
+        return contact_points(model, interface, comm, kinematics, *faces, carrier=contact.carrier)
+    moved = contact, worn.relative_motion(interface.bodies)
     return worn_contact_points(model, interface, kinematics, *moved, *faces)
 
 

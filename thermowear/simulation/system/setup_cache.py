@@ -94,7 +94,7 @@ def inputs(model: Model, zone: Zone | None = None) -> CacheKeys:
         )
         for one in interfaces
     ]
-    points = (mesh, faces, model.wears)
+    points = (mesh, faces)
     strained = {part: (m.young_modulus, m.poisson_ratio) for part, m in materials.items()}
     stiffness = strained, points
     if heat is None:

@@ -311,7 +311,8 @@ def _round_faces() -> list[Study]:
     """
     initial = 'analysis={type="initial"}'
     time = 'analysis={{type="transient", end_time="{}", tolerance={}}}'
-    worn, short, year = ("pressure", "shape"), time.format("200 s", 1e-3), time.format("1e5 s", 1e-2)
+    worn = "pressure", "shape"
+    short, year = time.format("200 s", 1e-3), time.format("1e5 s", 1e-2)
     listed: list[tuple[str, tuple[str, ...], tuple[str, ...], tuple[tuple[int, int], ...]]] = [
         ("pin-on-disk", (), ("shape", "temperature"), ((1, 6), (1, 10), (2, 3), (2, 5))),
         ("pin-on-disk-ball", (), ("pressure",), ((1, 6), (2, 3), (2, 5))),

@@ -203,9 +203,7 @@ def _temperature_change(
     return temperature_change(end.system, heat, thermal, found, conductance, time, near), None
 
 
-def _of_temperature(
-    end: Snapshot, heated: TemperatureChange, enriched: np.ndarray
-) -> float | None:
+def _of_temperature(end: Snapshot, heated: TemperatureChange, enriched: np.ndarray) -> float | None:
     """Error of the temperature by its change and that of the pressure, which makes the heat."""
     system, found, conditions = end.system, end.bodies.temperatures, end.contact.conditions
     assert found is not None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -18,7 +18,7 @@ from thermowear.simulation.from_case import run as run_case
 from thermowear.verification.check import Check, compare, compare_worst
 
 from ..scripting.from_case import CELLS, FACETS, own_mesh
-from .random_pads import ALL, CUSTOMARY, Scene, random_scene
+from .random_pads import ALL, CUSTOMARY, SMALL, Scene, random_scene
 from .test_checkpoint import Watched
 
 LABELS, MOVED, SAME_PLACE = 1e-12, 1e-9, 2e-5
@@ -191,7 +191,7 @@ def _backwards(tables: dict[str, Any], *names: str) -> None:
 
 def order_of_bodies(seed: int) -> tuple[Scene, Other]:
     """Bodies listed backwards, as their tables are."""
-    scene = random_scene(seed)
+    scene = random_scene(seed, analyses=SMALL)
     other = scene.changed(blocks=scene.blocks[::-1])
     _backwards(other.tables, "bodies", "wear")
     return scene, Other(other, LABELS)
@@ -199,7 +199,7 @@ def order_of_bodies(seed: int) -> tuple[Scene, Other]:
 
 def order_of_contacts(seed: int) -> tuple[Scene, Other]:
     """Contacts and holders listed backwards."""
-    scene = random_scene(seed, pads=2)
+    scene = random_scene(seed, analyses=SMALL, pads=2)
     other = scene.changed()
     _backwards(other.tables, "contacts", "holders")
     return scene, Other(other, LABELS)
@@ -207,13 +207,13 @@ def order_of_contacts(seed: int) -> tuple[Scene, Other]:
 
 def order_of_files(seed: int) -> tuple[Scene, Other]:
     """A file for each body, listed backwards."""
-    scene = random_scene(seed)
+    scene = random_scene(seed, analyses=SMALL)
     return scene, Other(scene.changed(blocks=scene.blocks[::-1], paths=True), LABELS)
 
 
-def faces_exchanged(seed: int) -> tuple[Scene, Other]:
+def faces_exchanged(seed: int, analyses: Sequence[str] = ALL) -> tuple[Scene, Other]:
     """The other face of each contact named first."""
-    scene = random_scene(seed, analyses=ALL)
+    scene = random_scene(seed, analyses=analyses)
     other = scene.changed()
     for contact in other.tables["contacts"].values():
         contact["between"].reverse()
@@ -294,7 +294,7 @@ def _turning(speed: tuple[str, float], centre: np.ndarray, axis: list[float]) ->
 
 def units(seed: int) -> tuple[Scene, Other]:
     """In inches, pounds, ksi, degrees Fahrenheit and British thermal units."""
-    scene = random_scene(seed)
+    scene = random_scene(seed, analyses=SMALL)
     return scene, Other(replace(scene, units=CUSTOMARY), MOVED)
 
 
@@ -338,7 +338,7 @@ def in_python(seed: int) -> tuple[Scene, Other]:
 
 def resumed(seed: int) -> tuple[Scene, Other]:
     """Continued from the state after a third of the steps."""
-    scene = random_scene(seed, analyses=("transient",))
+    scene = random_scene(seed, analyses=ALL[2:])
     scene.tables["analysis"]["checkpoint_every"] = ("time", 1e-9)
     return scene, Other(scene, LABELS, run=run_resumed)
 

@@ -7,23 +7,27 @@ from mpi4py import MPI
 
 import numpy as np
 
-from .invariance import columns, run
-from .random_pads import random_scene
+from .invariance import columns, faces_exchanged, run
+from .random_pads import SMALL
 
 
-def computed(first: int, count: int, folder: Path) -> dict[str, np.ndarray]:
-    """Columns by seed, contact and name; without gaps, which are rounding where they are closed."""
-    return {
-        f"{seed} {contact} {name}": values
-        for seed in range(first, first + count)
-        for contact, of in columns(run(random_scene(seed), folder / str(seed))).items()
-        for name, values in of.items()
-        if name != "gap"
-    }
+def computed(first: int, count: int, folder: Path, exchanged: bool) -> dict[str, np.ndarray]:
+    """Columns by seed, contact and name, and those of the same cases with exchanged faces.
+
+    Without gaps, which are rounding where they are closed, and places, which are on body 1.
+    """
+    result = {}
+    for seed in range(first, first + count):
+        scene, other = faces_exchanged(seed, SMALL)
+        found = run(other.scene if exchanged else scene, folder / str(seed))
+        for contact, of in columns(found, other if exchanged else None).items():
+            kept = of.keys() - {"gap", "places"}
+            result |= {f"{seed} {contact} {name}": of[name] for name in kept}
+    return result
 
 
 if __name__ == "__main__":
     rank = MPI.COMM_WORLD.rank
     *numbers, place = sys.argv[1:]
-    found = computed(*map(int, numbers), Path(place) / f"rank_{rank}")
+    found = computed(*map(int, numbers), Path(place) / f"rank_{rank}", exchanged=True)
     np.savez(Path(place) / f"found_{rank}.npz", **found)

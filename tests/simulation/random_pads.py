@@ -14,8 +14,10 @@ from thermowear.geometry.mesh.tagged import TaggedMesh
 from thermowear.geometry.reading.export import write_mesh
 
 MODELS = ("plane-strain", "plane-stress", "axisymmetric", "3d")
-ALL = ("initial", "steady", "transient", "deep", "reciprocating", "fretting")
-"""Analyses; ``"deep"`` is a running-in whose meshes follow the wear."""
+ONCE = ("initial", "steady", "transient")
+SMALL = (*ONCE, "reciprocating", "fretting")
+ALL = (*SMALL, "deep")
+"""Analyses; the wear is small in all but ``"deep"``, a running-in whose meshes follow it."""
 CELLS = {2: "quadrilateral", 3: "hexahedron"}
 _CORNERS = {
     2: ((0, 0), (1, 0), (1, 1), (0, 1)),
@@ -55,6 +57,7 @@ CUSTOMARY = {
     "density": (_POUND / _FOOT**3, "lb/foot^3"),
     "heat": (_BTU / (_POUND * _F), "Btu_it/(lb delta_degF)"),
     "time": (60.0, "min"),
+    "frequency": (1 / 60, "1/min"),
 }
 
 
@@ -237,7 +240,7 @@ def grid(*lines: np.ndarray) -> np.ndarray:
 def random_scene(
     seed: int,
     *models: str,
-    analyses: Sequence[str] = ("initial", "steady", "transient"),
+    analyses: Sequence[str] = ONCE,
     pads: int | None = None,
     **given: bool,
 ) -> Scene:

@@ -34,6 +34,8 @@ _ACTIVE_PRESSURE_RATIO = 0.15
 """Fraction of the coarse peak pressure above which points are active at first: too small a contact
 gains all penetrating points at once, while too large a contact loses only its outermost points in
 each iteration."""
+_ONE_DIRECTION = 1e-9
+"""Relative size of the components at rounding level of directions that are all the same."""
 _MAX_WORK_RATIO = 0.9
 """Largest ratio of the residual work at the end of a full step to that at its start."""
 
@@ -81,7 +83,9 @@ def resolved_pressure(
         Traction per pressure.
     """
     space = PressureSpace(basis, scaled(weights, basis))
-    directions = directions[:, np.any(directions != 0.0, axis=0)]
+    # on a plane face with friction all are one direction: one condition, not one for each component
+    _, sizes, axes = np.linalg.svd(directions, full_matrices=False)
+    directions = directions @ axes[sizes > _ONE_DIRECTION * sizes[0]].T
     areas, force = space.weak(directions), directions.T @ (weights * pressure)
     return basis @ solve_contact(space.mass, -space.weak(pressure), areas, force).coefficients
 

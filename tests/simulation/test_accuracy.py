@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from thermowear.contact.solvers.enriched_pressure import EnrichedContact
 from thermowear.errors import ComputationError
 from thermowear.results.points import part_of
 from thermowear.simulation import Observer, run
@@ -171,7 +172,7 @@ def test_no_estimate_never_ends_a_run(monkeypatch):
     def fails(*_):
         raise ComputationError("no pressure satisfies the contact conditions")
 
-    monkeypatch.setattr("thermowear.simulation.accuracy.error_estimate.enriched_pressure", fails)
+    monkeypatch.setattr(EnrichedContact, "solved", fails)
     result = run_starter("cylinder-on-block", *LINE, "mesh.degree=2", "mesh.elements=4")
     assert estimates(result)["pressure"] is None
     assert "satisfies" in result.summary["error_estimate_missing"]["pressure"]

@@ -24,7 +24,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...contact.search.pairing import PairedFace, pair
-from ...contact.solvers.enriched_pressure import enriched_pressure, linearised_pressure
+from ...contact.solvers.enriched_pressure import EnrichedContact
 from ...errors import CaseError, ComputationError, percent
 from ...lagrange import lattice
 from ...model.analyses import Analysis
@@ -280,9 +280,7 @@ def _enriched_pressure(end: Snapshot, bodies: EnrichedBodies, opened: np.ndarray
     model = system.model
     if any(one.pressure_degree == "lobatto" for one in model.interfaces):
         raise ComputationError('contact.pressure_degree = "lobatto" has no richer pressures')
-    points, functions = system.basis.shape
-    many = points * functions > _MANY
-    return (linearised_pressure if many else enriched_pressure)(
+    contact = EnrichedContact(
         system.contacts,
         system.influence,
         [model.pressure_degree(one) + 1 for one in model.interfaces],
@@ -292,6 +290,8 @@ def _enriched_pressure(end: Snapshot, bodies: EnrichedBodies, opened: np.ndarray
         system.softness + _wear_per_pressure(system, interface),
         bodies.answer,
     )
+    many = np.prod(system.basis.shape) > _MANY
+    return contact.linearised() if many else contact.solved()
 
 
 def _wear_per_pressure(system: System, interface: InterfaceFields) -> np.ndarray:

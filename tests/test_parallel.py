@@ -17,7 +17,6 @@ from .scripting import on_ranks
 pytestmark = pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
 
 ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-ROOT |= {"OMPI_MCA_mpi_yield_when_idle": "1"}  # ranks that wait leave the cores to other tests
 
 
 def thermowear(ranks, *arguments, module="thermowear"):

@@ -19,9 +19,8 @@ from ...case.values.json_schema import LIST_OF_NAMES, OrAlso
 from ...case.values.section import MODEL, KeyFault, UserFile
 from ...case.values.units import Length
 from ..checks.assembly_checks import check_assembly
-from ..reading.bodies import has_surface, read_bodies
 from ..reading.named import Named
-from .mesh_file import CellSets, CurvedSurfaces, curved_surfaces
+from .mesh_file import CellSets, CurvedSurfaces, FromFiles, curved_surfaces
 
 _KEYS = {"body_names": "bodies", "surface_names": "surfaces"}
 """Attributes whose keys are named like properties of every geometry."""
@@ -40,7 +39,7 @@ def _names(value: Any) -> Any:
 SurfaceNames = Annotated[dict[str, str], BeforeValidator(_names), OrAlso(LIST_OF_NAMES)]
 
 
-class AssemblyFile(AssemblyGeometry):
+class AssemblyFile(FromFiles, AssemblyGeometry):
     """Path of a mesh file of several bodies, and the names of bodies and surfaces in it.
 
     See `mesh_file.MeshFile` for the formats.
@@ -87,12 +86,7 @@ class AssemblyFile(AssemblyGeometry):
         self._in_space, self._plane = model == "3d", model.startswith("plane")
         if len(self.bodies) < 2:
             raise KeyFault("bodies", f"needs two or more bodies; found {len(self.bodies)}")
-        if self.paths and self.path is not None:
-            raise KeyFault("paths", "only one of path and paths can be given")
-        if self.paths and set(self.paths) != set(self.bodies):
-            raise KeyFault("paths", f"needs a file for each of: {', '.join(self.bodies)}")
-        if not self.paths and self.path is None:
-            raise KeyFault("path", "missing")
+        self._check_files()
         if "thickness" in self.model_fields_set and not self._plane:
             raise KeyFault("thickness", "requires a plane model")
         self._check_surfaces()
@@ -125,10 +119,6 @@ class AssemblyFile(AssemblyGeometry):
         return {name: value for name, value in found.items() if name not in left_out}
 
     @property
-    def bodies(self) -> tuple[str, ...]:
-        return tuple(self.body_names)
-
-    @property
     def surfaces(self) -> tuple[str, ...]:
         return tuple(name for names in self._surfaces_of().values() for name in names)
 
@@ -140,36 +130,11 @@ class AssemblyFile(AssemblyGeometry):
         return next(body for body, names in self._surfaces_of().items() if surface in names)
 
     @property
-    def zones(self) -> dict[str, str]:  # type: ignore[override]
-        return {
-            f"{body}.{name}": body for body, sets in self._with_material.items() for name in sets
-        }
-
-    @property
-    def set_of(self) -> dict[str, str]:  # type: ignore[override]
-        return {
-            f"{body}.{name}": name for body, sets in self._with_material.items() for name in sets
-        }
-
-    @property
     def thickness_factor(self) -> float | None:  # type: ignore[override]
         return self.thickness if self._plane else None
 
-    @property
-    def mesh_files(self) -> str | None:  # type: ignore[override]
-        return self.path or " and ".join(self.paths.values())
-
     def press_direction(self, surface: str) -> tuple[float, ...]:
         return (0.0, 0.0, -1.0) if self._in_space else (0.0, -1.0)
-
-    def sets_of(self, body: str) -> tuple[str, ...]:
-        names = self.body_names[body]
-        return (names,) if isinstance(names, str) else names
-
-    def with_cell_sets(self, sets: dict[str, dict[str, str]]) -> AssemblyFile:
-        result = self.model_copy()
-        result._with_material = {body: sets[body] for body in self.bodies if body in sets}
-        return result
 
     def build(self, mesh):
         surfaces = [
@@ -177,21 +142,12 @@ class AssemblyFile(AssemblyGeometry):
             for body, names in self.surface_names.items()
             for name, in_file in names.items()
         ]
-        return read_bodies(
-            self.path,
-            self.paths,
-            3 if self._in_space else 2,
-            self.length_unit,
-            {body: self.sets_of(body) for body in self.bodies},
-            surfaces,
-            self._with_material,
-            curved_surfaces(self.curved, self.surfaces),
-        )
+        return self._read(surfaces)
 
     def not_listed(self, surface: str) -> bool:
         if self.sized or any(surface in of.values() for of in self.surface_names.values()):
             return False
-        return has_surface(surface, self.path, self.paths, 3 if self._in_space else 2)
+        return self._has_surface(surface)
 
     def check(self, mesh, case):
         check_assembly(mesh, case)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from copy import copy
 from operator import attrgetter
-from typing import Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import (
     BeforeValidator,
@@ -22,6 +24,7 @@ from ..checks.mesh_checks import check_mesh
 from ..checks.pair_checks import check_pair
 from ..checks.solid_pairs import projected_area
 from ..checks.solid_surfaces import check_solid_mesh
+from ..mesh.mixed import AnyMesh
 from ..reading.bodies import has_surface, read_bodies
 from ..reading.named import Named
 
@@ -69,7 +72,75 @@ def curved_surfaces(curved: CurvedSurfaces, surfaces: tuple[str, ...]) -> tuple[
     return (surfaces if curved else ()) if isinstance(curved, bool) else curved
 
 
-class MeshFile(HalvableGeometry):
+class FromFiles:
+    """Common part of geometries of one file, or of a file for each body."""
+
+    if TYPE_CHECKING:
+        path: str | None
+        paths: dict[str, str]
+        length_unit: float
+        body_names: dict[str, CellSets]
+        curved: CurvedSurfaces
+        _with_material: dict[str, dict[str, str]]
+        _in_space: bool
+
+        @property
+        def surfaces(self) -> tuple[str, ...]: ...
+
+    @keyed
+    def bodies(self) -> tuple[str, ...]:
+        return tuple(self.body_names)
+
+    @keyed
+    def mesh_files(self) -> str | None:
+        return self.path or " and ".join(self.paths.values())
+
+    @keyed
+    def set_of(self) -> dict[str, str]:
+        return {
+            f"{body}.{name}": name for body, names in self._with_material.items() for name in names
+        }
+
+    @keyed
+    def zones(self) -> dict[str, str]:
+        return {
+            f"{body}.{name}": body for body, sets in self._with_material.items() for name in sets
+        }
+
+    def sets_of(self, body: str) -> tuple[str, ...]:
+        names = self.body_names[body]
+        return (names,) if isinstance(names, str) else names
+
+    def with_cell_sets(self, sets: dict[str, dict[str, str]]) -> Self:
+        result = copy(self)
+        result._with_material = {body: sets[body] for body in self.bodies if body in sets}
+        return result
+
+    def _check_files(self) -> None:
+        if self.paths and self.path is not None:
+            raise KeyFault("paths", "only one of path and paths can be given")
+        if self.paths and set(self.paths) != set(self.bodies):
+            raise KeyFault("paths", f"needs a file for each of: {', '.join(self.bodies)}")
+        if not self.paths and self.path is None:
+            raise KeyFault("path", "missing")
+
+    def _read(self, surfaces: Sequence[Named]) -> AnyMesh:
+        return read_bodies(
+            self.path,
+            self.paths,
+            3 if self._in_space else 2,
+            self.length_unit,
+            {body: self.sets_of(body) for body in self.bodies},
+            surfaces,
+            self._with_material,
+            curved_surfaces(self.curved, self.surfaces),
+        )
+
+    def _has_surface(self, name: str) -> bool:
+        return has_surface(name, self.path, self.paths, 3 if self._in_space else 2)
+
+
+class MeshFile(FromFiles, HalvableGeometry):
     """Path of a mesh file, and the names of bodies and surfaces in it.
 
     The file names bodies and surfaces by physical groups (gmsh), sets (Abaqus), families (MED) or
@@ -153,12 +224,7 @@ class MeshFile(HalvableGeometry):
             raise KeyFault(
                 "bodies", f"needs two bodies, the held one first; found {len(self.bodies)}"
             )
-        if self.paths and self.path is not None:
-            raise KeyFault("paths", "only one of path and paths can be given")
-        if self.paths and set(self.paths) != set(self.bodies):
-            raise KeyFault("paths", f"needs a file for each of: {', '.join(self.bodies)}")
-        if not self.paths and self.path is None:
-            raise KeyFault("path", "missing")
+        self._check_files()
         if self.track is not None and not (model.startswith("plane") and not self.half):
             raise KeyFault("track", "requires a plane model, not half of it")
         if self._in_space:
@@ -220,17 +286,9 @@ class MeshFile(HalvableGeometry):
     def thickness_factor(self) -> float | None:
         return None if self._in_space else super().thickness_factor
 
-    @keyed
-    def mesh_files(self) -> str | None:
-        return self.path or " and ".join(self.paths.values())
-
     def rollers_of(self, body: str) -> tuple[str, ...]:
         """All surfaces on rollers, which may belong to both bodies, for the first one."""
         return self.rollers if body == self.bodies[0] else ()
-
-    @keyed
-    def bodies(self) -> tuple[str, ...]:
-        return tuple(self.body_names)
 
     @keyed
     def surfaces(self) -> tuple[str, ...]:
@@ -242,48 +300,18 @@ class MeshFile(HalvableGeometry):
             self._measured = min(projected_area(mesh, face) for face in self.contact)
         return self.contact_area_given or self._measured
 
-    @keyed
-    def set_of(self) -> dict[str, str]:
-        return {
-            f"{body}.{name}": name for body, names in self._with_material.items() for name in names
-        }
-
-    @keyed
-    def zones(self) -> dict[str, str]:
-        return {
-            f"{body}.{name}": body for body, sets in self._with_material.items() for name in sets
-        }
-
     @property
     def facing(self) -> tuple[str | None, str | None]:
         first, second = (None if name in self._with_material else name for name in self.bodies)
         return first, second
 
-    def sets_of(self, body: str) -> tuple[str, ...]:
-        names = self.body_names[body]
-        return (names,) if isinstance(names, str) else names
-
-    def with_cell_sets(self, sets: dict[str, dict[str, str]]) -> MeshFile:
-        result = self.model_copy()
-        result._with_material = {body: sets[body] for body in self.bodies if body in sets}
-        return result
-
     def build(self, mesh, zone):
-        return read_bodies(
-            self.path,
-            self.paths,
-            3 if self._in_space else 2,
-            self.length_unit,
-            {body: self.sets_of(body) for body in self.bodies},
-            list(self._purposes().values()),
-            self._with_material,
-            curved_surfaces(self.curved, self.surfaces),
-        )
+        return self._read(list(self._purposes().values()))
 
     def not_listed(self, surface: str) -> bool:
         if self.sized or surface in self.surface_names.values():
             return False
-        return has_surface(surface, self.path, self.paths, 3 if self._in_space else 2)
+        return self._has_surface(surface)
 
     def check(self, mesh, case):
         if self._in_space:

@@ -11,6 +11,8 @@ import numpy as np
 
 from .quantity import as_in, column, table, table_of
 
+_TRACK = "of a body that is passed over"
+
 
 @table(
     "interface",
@@ -119,10 +121,13 @@ class FrictionInterface:
 
 
 @table(
-    "track", "Track at the end", "reciprocating: wear depth and rate along body 2", at_times=True
+    "track",
+    "Track at the end",
+    "reciprocating: wear depth and rate along the body that is passed over",
+    at_times=True,
 )
 class WornTrack:
-    """Wear of body 2 along its track in reciprocating sliding.
+    """Wear along the tracks in reciprocating sliding, NaN for the bodies that pass over them.
 
     Tracks of several contacts follow one another; `counts` has their numbers of points.
     """
@@ -131,8 +136,10 @@ class WornTrack:
     y: np.ndarray = column("y", "m", "mm", "in space", optional=True)
     z: np.ndarray = column("z", "m", "mm", "in space", optional=True)
     weight: np.ndarray = column("area weight", "m²", "mm²", "in space", optional=True)
-    wear_2: np.ndarray = as_in(InterfaceFields)
-    wear_rate_2: np.ndarray = as_in(InterfaceFields)
+    wear_1: np.ndarray = column("wear depth, body 1", "m", "µm", _TRACK, optional=True)
+    wear_2: np.ndarray = column("wear depth, body 2", "m", "µm", _TRACK, optional=True)
+    wear_rate_1: np.ndarray = column("wear rate, body 1", "m/s", "nm/s", _TRACK, optional=True)
+    wear_rate_2: np.ndarray = column("wear rate, body 2", "m/s", "nm/s", _TRACK, optional=True)
     counts: tuple[int, ...] = ()
 
 

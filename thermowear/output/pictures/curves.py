@@ -169,18 +169,26 @@ def draw_friction(folder: Path, contact: str = "") -> None:
 
 
 def draw_track(folder: Path, contact: str = "") -> None:
-    """Draw ``track.png``: wear depths of both bodies, body 1 in the middle of its stroke."""
+    """Draw ``track.png``: wear depths of both bodies in the middle of the stroke."""
     files = _at_times(folder, "track", contact)
     with column(folder / picture("track", contact), 2, 2.8) as axes:
         for (label, path), color in zip(files.items(), time_colors(len(files)), strict=True):
             moving = tables.read(path.with_name(path.name.replace("track", "interface")))
-            both = ((moving, "wear_1"), (tables.read(path), "wear_2"))
+            both = passing(moving, tables.read(path))
             for axis, (data, name) in zip(axes, both, strict=True):
                 plot_columns(axis, data, "x", name, color=color, label=label)
                 axis.set_ylabel(data.quantities[name].axis)
         for axis in axes:
             axis.invert_yaxis()
         time_legend(axes[0])
+
+
+def passing(
+    moving: tables.TableColumns, track: tables.TableColumns
+) -> list[tuple[tables.TableColumns, str]]:
+    """Tables and columns of the wear of a body that passes over another, and of that one."""
+    names = ["wear_1", "wear_2"]
+    return list(zip((moving, track), names[::-1] if "wear_1" in track else names, strict=True))
 
 
 def _at_times(folder: Path, stem: str, contact: str) -> dict[str, Path]:

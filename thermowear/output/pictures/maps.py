@@ -15,7 +15,7 @@ from scipy.sparse.csgraph import connected_components
 
 from .. import tables
 from ..files import name_at, picture
-from .curves import coated_bodies, final_time, interface_panels, worn_bodies
+from .curves import coated_bodies, final_time, interface_panels, passing, worn_bodies
 from .panels import MAP_STYLE, draw_colors, label_coordinates, panels, time_text
 
 _LONGER_SIDE = 4.6  # longer side of the face [inches]
@@ -86,13 +86,11 @@ def draw_friction_maps(folder: Path, contact: str = "") -> None:
 
 
 def draw_track_maps(folder: Path, contact: str = "") -> None:
-    """Draw ``track.png``: wear depths of both bodies, body 1 in the middle of its stroke."""
+    """Draw ``track.png``: wear depths of both bodies in the middle of the stroke."""
     moving, track = (
         tables.read(folder / name_at(stem, None, contact)) for stem in ("interface", "track")
     )
-    names = [
-        (data, name) for data, name in ((moving, "wear_1"), (track, "wear_2")) if data[name].any()
-    ]
+    names = [(data, name) for data, name in passing(moving, track) if data[name].any()]
     meshes = [triangulated(*(d.drawn(c) for c in ("x", "y", "weight"))) for d, _ in names]
     with _maps(folder / picture("track", contact), meshes[-1], len(names)) as (_, axes):
         for axis, triangles, (data, name) in zip(axes.flat, meshes, names, strict=False):

@@ -50,14 +50,13 @@ def steady_design(system: System, number: int, side: int) -> Design:
         table = system.model.interfaces[number].table
         raise ComputationError(f"{table}: carries nothing in the steady state, so no shape follows")
     depth, height, along = depth[own], gap[own] + depth[own], along_load(system)[own]
-    at, other = pairing.sides[side], side == 1
-    points, normals = at.face.points(at.facet, at.t), pairing.normals
+    at = pairing.sides[side]
     height_along = height / along
     design = Design(
         body=side + 1,
-        points=points,
-        s=at.position if other else pairing.position,
-        normals=at.face.normals(at.facet, at.t) if other else normals,
+        points=at.points,
+        s=at.position,
+        normals=at.face.normals(at.facet, at.t),
         shape=height.max() - height,
         shape_along_press=np.nanmax(height_along) - height_along,
         depth=depth,

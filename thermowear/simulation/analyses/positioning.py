@@ -88,5 +88,5 @@ def _step(zone: np.ndarray, residual: np.ndarray, before) -> np.ndarray:
 
 def _smallest(system: System) -> float:
     """Size of the smallest element of the contact face [m]."""
-    nodes = system.pairing.sides[0].face.nodes
+    nodes = system.pairing.carrying.face.nodes
     return float(np.linalg.norm(nodes[:, -1] - nodes[:, 0], axis=1).min())

@@ -97,8 +97,11 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
         grids, rates = self._problem.track.each, self._problem.rates(state.pressure)
         pairs = zip(self._system.contacts.each, grids, strict=True)
         x, y, z, area = np.concatenate([_places(pairing, grid) for pairing, grid in pairs]).T
-        worn, rate = (self._problem.split(of)[1] for of in (state.worn, rates))
-        return WornTrack(x, y, z, area, worn, rate, tuple(len(grid.areas) for grid in grids))
+        counts = tuple(len(grid.areas) for grid in grids)
+        first = np.repeat(self._system.contacts.carriers == 1, counts)
+        both = np.array([self._problem.split(of)[1] for of in (state.worn, rates)])
+        (wear_1, rate_1), (wear_2, rate_2) = (np.where(k, both, np.nan) for k in (first, ~first))
+        return WornTrack(x, y, z, area, wear_1, wear_2, rate_1, rate_2, counts)
 
     def summary(self) -> dict:
         rows, pressure = self.table(HistoryRow), self.last.state.pressure

@@ -40,8 +40,7 @@ def ends_outside_zone(system: System) -> tuple[bool, bool]:
     if zone is None:
         return False, False
     margin = 1e-6 * (zone[1] - zone[0])
-    first, last = (x.min(), x.max()) if _is_surface(system) else (x[0], x[-1])
-    return bool(first < zone[0] - margin), bool(last > zone[1] + margin)
+    return bool(x.min() < zone[0] - margin), bool(x.max() > zone[1] + margin)
 
 
 def _is_surface(system: System) -> bool:
@@ -55,7 +54,8 @@ def reaches_open_end(system: System, pressure: np.ndarray) -> bool:
         middle = (zone[0] + zone[1]) / 2, 0.0
         away = np.linalg.norm(system.contacts.points[:, :2] - middle, axis=1)
         return bool(np.any(pressure[away > _RIM * away.max()] > 0))
-    ends = zip(ends_outside_zone(system), (0, -1), strict=True)
+    x = system.contacts.points[:, 0]
+    ends = zip(ends_outside_zone(system), (x.argmin(), x.argmax()), strict=True)
     return any(outside and pressure[end] > 0 for outside, end in ends)
 
 
@@ -71,7 +71,8 @@ def wider_zone(system: System, pressure: np.ndarray) -> Zone | None:
     middle = 0.0 if system.model.symmetry else (zone[0] + zone[1]) / 2
     pressing = x[pressure > 0]
     found, wide = list(zone), False
-    each = zip(ends_outside_zone(system), (pressing.min(), pressing.max()), x[[0, -1]], strict=True)
+    edges, ends = ((at.min(), at.max()) for at in (pressing, x))
+    each = zip(ends_outside_zone(system), edges, ends, strict=True)
     for side, (open_ended, edge, end) in enumerate(each):
         if open_ended and abs(edge - zone[side]) >= abs(end - zone[side]) / 2 > 0.0:
             wide |= abs(edge - middle) > abs(zone[side] - middle)

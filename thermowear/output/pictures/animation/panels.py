@@ -181,9 +181,9 @@ class CurvePanel(ScenePanel):
         return {"color": self._colors[curve[0]], "linestyle": line}
 
     def _at(self, state: FrameState, curve: Curve) -> tuple[np.ndarray, np.ndarray]:
-        """Positions and values along a contact, or of body 2 along its track, if it has one."""
+        """Positions and values along a contact, or of a body along its track, if it has one."""
         contact, name = curve
-        if name == "wear_2" and state.track is not None:
+        if state.track is not None and name in state.track:
             return state.track.drawn("x"), state.track.drawn(name)
         table = state.interfaces[contact]
         return table.drawn(_abscissa(self._states[-1])), table.drawn(name)
@@ -222,7 +222,7 @@ class WearCurves(CurvePanel):
             axis.plot(*self._at(last, curve), label="_" if self._lines else "end", **_FAINT)
             (self._lines[curve],) = axis.plot(*self._at(first, curve), **self._style(curve))
         each = [self._at(state, curve)[1] for state in self._states for curve in self._curves]
-        deepest = max(depths.max() for depths in each)
+        deepest = max(np.nanmax(depths) for depths in each)
         axis.set_ylim(_AXIS_END * deepest, (1 - _AXIS_END) * deepest)
         axis.set_ylabel(last.interface.quantities["wear_1"].of_both.wrapped)
         super().prepare(axis)
@@ -242,11 +242,12 @@ class WearCurves(CurvePanel):
 def contact_curves(frames: FrameSequence) -> list[CurvePanel]:
     """Panels of the pressure and, if a body wears, of the wear depths."""
     last = frames.states[-1]
+    track = {} if last.track is None else last.track
     worn = [
         (contact, name)
         for contact, table in last.interfaces.items()
         for name in _STYLES
-        if (table if last.track is None or name == "wear_1" else last.track)[name].max() > 0
+        if np.nanmax((track if name in track else table)[name]) > 0
     ]
     return [PressureCurve(frames), *([WearCurves(frames, worn)] if worn else [])]
 

@@ -55,7 +55,8 @@ class Growing:
 
 def state_of(worn):
     nothing, none = np.zeros(3), np.zeros((3, 1))
-    return StickSlipState(nothing, none, none, none[0], none[0], nothing, none, nothing, worn)
+    loads, edge = (none[0], none[0]), (nothing, nothing, nothing)
+    return StickSlipState(nothing, none, none, *loads, nothing, none, nothing, worn, *edge)
 
 
 def run(cycles, tolerance=1e-2, stops=(1, COUNT), longest=np.inf, restart=None):

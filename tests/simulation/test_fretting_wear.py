@@ -181,13 +181,15 @@ def test_adaptive_jumps_hit_output_times():
     assert rows[20].wear_volume_2 < inside.weight @ inside.wear_2 < rows[21].wear_volume_2
 
 
-def test_adaptive_jumps_where_the_middle_sticks(sticking):
-    """requirement: wear of partial slip, and none in the middle, however long the jumps."""
-    changes = BOTH | {"analysis.output_times": []}
-    result = solved(FRETTING, changes, *SMALL, "wear.cycles=100000")
-    last, known = result.friction.cycles[-1], sticking.friction.cycles[-1]
+def test_adaptive_jumps_where_the_middle_sticks():
+    """requirement: wear of partial slip, and none in the middle, in few jumps as in many."""
+    changes, count = BOTH | {"analysis.output_times": []}, "wear.cycles=100000"
+    result = solved(FRETTING, changes, *SMALL, count)
+    many = solved(FRETTING, changes, *SMALL, count, "analysis.jump=2500")
+    last, known = result.friction.cycles[-1], many.friction.cycles[-1]
     assert last.cycle == 100000
-    assert last.wear_volume_2 == close(known.wear_volume_2, rel=0.1)
+    assert len(result.friction.cycles) < len(many.friction.cycles) / 1.5
+    assert last.wear_volume_2 == close(known.wear_volume_2, rel=0.03)
     i = result.interface
     assert np.all(i.wear_2[np.abs(i.x) < 3e-5] == 0.0)
     assert result.summary["wear_volume_2_m3"] == close(
@@ -195,34 +197,42 @@ def test_adaptive_jumps_where_the_middle_sticks(sticking):
     )
 
 
-def test_the_end_of_partial_slip_and_its_estimate():
-    """requirement: pressure only where it sticks, and a volume as far from the closed form of
-    half-planes as the estimate says; without a stick zone nothing is uncertain.
+@pytest.mark.parametrize("push", [24.0, 26.0, 28.8])
+def test_the_end_of_partial_slip_and_its_estimate(push):
+    """requirement: pressure only where it sticks; the edge is found within a tenth of an element
+    wherever it lies in it, and the volume as far from the closed form of half-planes as the
+    estimate says.
 
     On the stick zone, ``c² = a² (1 - Q/μP)`` as in the first cycle, the pressure is that of the
     unworn cylinder and a punch of the force Q/μ; where wear ends, faces just touch beyond it.
     """
-    push, radius, modulus = 28.8e3, 6e-3, 2e11 / (2 * (1 - 0.3**2))  # per length of 1 mm
+    radius, modulus = 6e-3, 2e11 / (2 * (1 - 0.3**2))  # per length of 1 mm
     history = {"time": ["0 s", "1 s", "3 s", "5 s"]}
-    history["tangential_force"] = ["0 N", "28.8 N", "-28.8 N", "28.8 N"]
+    history["tangential_force"] = ["0 N", f"{push} N", f"-{push} N", f"{push} N"]
     strong = {"coefficient": "1e-6 1/MPa", "per": "pressure"}
     changes = {"load.history": history, "wear.cylinder": strong, "wear.block": strong}
     settings = "mesh.elements=48", "mesh.grading=1.0", "mesh.degree=2", "analysis.increments=3"
     changes |= {"analysis.output_times": [], "geometry.zone": "0.12 mm"}
-    result = solved(FRETTING, changes, *settings, "wear.cycles=8000", "analysis.jump=1000")
-    c2 = 4 * 1e3 * FORCE * radius / (np.pi * modulus) * (1 - push / (FRICTION * 1e3 * FORCE))
-    x = np.sqrt(c2) * np.linspace(1.0, 2.0, 20001)
-    far = np.arccosh(x / np.sqrt(c2))
-    depth = 2 * push / (np.pi * FRICTION * modulus) * far
+    result = solved(FRETTING, changes, *settings, "wear.cycles=8000", "analysis.jump=400")
+    c2 = 4 * 1e3 * FORCE * radius / (np.pi * modulus) * (1 - push / (FRICTION * FORCE))
+    c, element = np.sqrt(c2), 0.24e-3 / 48
+    x = c * np.linspace(1.0 + 1e-9, 2.0, 20001)
+    far = np.arccosh(x / c)
+    depth = 2e3 * push / (np.pi * FRICTION * modulus) * far
     depth -= (x * np.sqrt(x**2 - c2) - c2 * far) / (2 * radius)
     known = 2e-3 * np.trapezoid(np.maximum(depth, 0.0), x)
     summary, i = result.summary, result.interface
     volume = summary["wear_volume_1_m3"] + summary["wear_volume_2_m3"]
     error = summary["wear_volume_error_estimate_relative"]
-    assert np.all(i.pressure[np.abs(i.x) > 1.05 * np.sqrt(c2)] < 0.02 * i.pressure.max())
-    assert known < volume
-    assert (volume - known) / volume < 3 * error
-    assert summary["shape_error_estimate_relative"] >= error > 0.1
+    assert np.all(i.pressure[np.abs(i.x) > c + 1.5 * element] < 0.02 * i.pressure.max())
+    assert summary["shape_error_estimate_relative"] >= error > abs(volume / known - 1.0)
+    assert abs(volume - known) < 0.08 * known
+    assert 0.02 < error < 0.2
+    cycles = result.friction.cycles
+    assert summary["stick_radius_m"] == cycles[-1].stick_radius
+    for row in (cycles[0], cycles[-1]):
+        assert abs(row.stick_radius - c) < 0.1 * element
+    assert volume == close(2e-12 / FRICTION * summary["dissipated_energy_J"], rel=1e-8)
 
 
 def test_the_gap_is_closed_where_it_presses():

@@ -119,6 +119,9 @@ class CycleRow:
 
     Area and largest pressure are those of the whole cycle. ``jump`` is the length in cycles of the
     cycle jump that it ends, ``error`` relative to the largest wear depth; NaN if not estimated.
+    The stick radius is that of a circle through the edge of the zone that sticks all the time,
+    located inside of elements; in sections half of the width of the zone, if axisymmetric the
+    distance from the axis. NaN of several contacts (in `summary`), and without such a zone.
     """
 
     cycle: int = column("cycle")
@@ -132,6 +135,7 @@ class CycleRow:
     max_pressure: float = as_in(HistoryRow)
     jump: int = column("cycle-jump length", meaning="in cycles")
     error: float = column("cycle-jump error", meaning="relative to the largest wear depth")
+    stick_radius: float = column("stick radius", "m", "mm", "of the zone that does not slip")
 
 
 @table(

@@ -53,6 +53,7 @@ GROUPS: dict[str, tuple[Quantity, ...]] = {
         _history["contact_area"],
         from_key("contact_zones_m", meaning="ranges of `s_m` in contact, to a part of an element"),
         _loads["stick_area"],
+        _cycles["stick_radius"],
     ),
     "Wear": (
         from_key("shape_range_m", "peak-to-valley of the worn shape", "µm"),

@@ -46,17 +46,19 @@ class CondensedFriction(FrictionalContact):
     def increment(
         self, friction, state: StickSlipState, guess: StickSlipState, loads: Loads, worn, slope
     ) -> StickSlipState:
-        gap = self.weighted.T @ self.gap + self.mass @ worn
+        opened = self._opened(state.part > 0.0)
+        gap = self.weighted.T @ self.gap + opened @ worn
         compliance = self.compliance
         if slope is not None:
             m, compliance = len(worn), compliance.copy()
-            compliance[:m, :m] += self.mass @ slope.dense
+            compliance[:m, :m] += opened @ slope.dense
         given = loads.motions
         free = np.isnan(given)
         fixed = np.where(free, 0.0, given)
         start = self.stack(gap, -state.slip) - self.modes @ fixed
         modes = self.modes[:, free]
-        problem = CoulombProblem(compliance, start, modes, loads.forces[free], friction)
+        forces, bears_none = loads.forces[free], state.unsheared
+        problem = CoulombProblem(compliance, start, modes, forces, friction, bears_none)
         presses, slides = self.with_role("press")[free], self.with_role("slide")[free]
         closed = _predicted_active(problem, guess.pressure > 0, presses)
         near = None
@@ -68,6 +70,17 @@ class CondensedFriction(FrictionalContact):
             check_gross_slip_of_holders(problem, presses, slides, held)
             solution = solve_with_fallbacks(problem, closed)
         return self._state_after(state, solution, free, fixed)
+
+    def _opened(self, sticks: np.ndarray) -> np.ndarray:
+        """Weak gaps by worn depths, shape (m, m) [m²].
+
+        Functions overlap. What is worn next to the stick zone would open the gap within it, so that
+        its edge slips and wears, and so on: there, depths open the gap of their own function alone.
+        """
+        if not sticks.any():
+            return self.mass
+        inward = np.where(sticks[:, None], self.mass, 0.0)
+        return self.mass - inward + np.diag(inward.sum(axis=0))
 
     def _state_after(self, state, solution: CoulombSolution, free, fixed) -> StickSlipState:
         """State at the end of the increment from a solution."""
@@ -97,23 +110,6 @@ class CondensedFriction(FrictionalContact):
     @abstractmethod
     def point_slip(self, stacked: np.ndarray, motion: np.ndarray) -> np.ndarray:
         """Slip at the points under coefficients x and motion d of the holder, shape (n, t) [m]."""
-
-    @abstractmethod
-    def lost(self, shear: np.ndarray, slip: np.ndarray, point_slip: np.ndarray) -> np.ndarray:
-        """Energy dissipated at the points in an increment, shape (n,) [J/m²].
-
-        Its integral is exactly that of the weak conditions, to which each coefficient contributes
-        at least 0.
-
-        Parameters
-        ----------
-        shear : ndarray, shape (m, t)
-            Coefficients τ at the end of the increment [Pa].
-        slip : ndarray, shape (m, t)
-            Weak slip of the increment [m³].
-        point_slip : ndarray, shape (n, t)
-            Slip of the increment at the points [m].
-        """
 
 
 @dataclass(frozen=True)

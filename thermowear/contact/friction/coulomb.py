@@ -44,6 +44,8 @@ class CoulombProblem:
         Forces F [N].
     friction : ndarray, shape (m,)
         Coefficients of friction mu.
+    unsheared : ndarray, shape (m,)
+        Part of the pressure that bears no shear, see `stick_edge` [Pa].
     """
 
     compliance: np.ndarray
@@ -51,6 +53,11 @@ class CoulombProblem:
     modes: np.ndarray
     force: np.ndarray
     friction: np.ndarray
+    unsheared: np.ndarray | float = 0.0
+
+    def limit(self, pressure: np.ndarray) -> np.ndarray:
+        """Largest shear under pressures, shape (m,) [Pa]."""
+        return self.friction * np.maximum(pressure - self.unsheared, 0.0)
 
     @cached_property
     def stiffness(self) -> np.ndarray:
@@ -80,7 +87,7 @@ class CoulombProblem:
             False also for open coefficients.
         """
         normal, tangential = self.trial(unknowns)
-        radius = self.friction * np.maximum(normal, 0.0)
+        radius = self.limit(normal)
         length = np.linalg.norm(tangential, axis=1)
         sticking = (length <= radius) & (radius > 0)
         shrink = np.where(sticking, 1.0, radius / np.where(length > 0, length, 1.0))
@@ -218,10 +225,10 @@ def _projection_slopes(problem: CoulombProblem, unknowns: np.ndarray):
     pressure, _, sticking = problem.projection(unknowns)
     length = np.linalg.norm(tangential, axis=1)
     direction = tangential / np.where(length > 0, length, 1.0)[:, None]
-    slipping = (pressure > 0) & ~sticking
+    slipping = (pressure > problem.unsheared) & ~sticking
     identity = np.eye(tangential.shape[1])
     across = identity - direction[:, :, None] * direction[:, None, :]
-    turn = slipping * problem.friction * pressure / np.where(length > 0, length, 1.0)
+    turn = slipping * problem.limit(pressure) / np.where(length > 0, length, 1.0)
     turned = sticking[:, None, None] * identity + turn[:, None, None] * across
     return normal > 0, direction, slipping, turned
 
@@ -274,7 +281,7 @@ def violated(problem: CoulombProblem, solution: CoulombSolution) -> list[str]:
     m = len(problem.friction)
     y, sizes = (f(unknowns).reshape(-1, m) for f in (problem.relative, problem.sizes))
     gap, slip, small = y[0], y[1:].T, _TOLERANCE * sizes
-    λ, bound = solution.pressure, problem.friction * solution.pressure
+    λ, bound = solution.pressure, problem.limit(solution.pressure)
     carried, slipped = (np.linalg.norm(v, axis=1) for v in (solution.shear, slip))
     nothing = np.linalg.norm(small[1:], axis=0)
     opposed = carried * slipped + (solution.shear * slip).sum(axis=1)

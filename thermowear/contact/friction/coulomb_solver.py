@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -139,7 +140,9 @@ def _with_spring(problem: CoulombProblem, closed: np.ndarray, part: float) -> It
     anchor, start = np.zeros(len(force)), None
     for _ in range(_MAX_SPRING_UPDATES):
         offset = problem.offset - modes @ (anchor + force / spring)
-        sprung = CoulombProblem(softer, offset, modes[:, :0], force[:0], problem.friction)
+        sprung = replace(
+            problem, compliance=softer, offset=offset, modes=modes[:, :0], force=force[:0]
+        )
         start = _sticking(sprung, closed) if start is None else start
         solution = None if start is None else _verified_from(sprung, start)
         if solution is None:

@@ -105,6 +105,23 @@ class FrictionalContact(PressureSpace):
             If no solution is found.
         """
 
+    @abstractmethod
+    def lost(self, shear: np.ndarray, slip: np.ndarray, point_slip: np.ndarray) -> np.ndarray:
+        """Energy dissipated at the points in an increment, shape (n,) [J/m²].
+
+        Its integral is exactly that of the weak conditions, to which each coefficient contributes
+        at least 0.
+
+        Parameters
+        ----------
+        shear : ndarray, shape (m, t)
+            Coefficients τ at the end of the increment [Pa].
+        slip : ndarray, shape (m, t)
+            Weak slip of the increment [m³].
+        point_slip : ndarray, shape (n, t)
+            Slip of the increment at the points [m].
+        """
+
 
 def unloaded(
     contact: FrictionalContact, wearing: int = 0, coefficients: int | None = None
@@ -124,6 +141,7 @@ def unloaded(
     still, free = np.zeros(k), np.full(m, Status.OPEN)
     shears, points = np.zeros((m, t)), np.zeros((n, t))
     worn = np.zeros((wearing, m if coefficients is None else coefficients))
+    none = np.zeros(m)
     return StickSlipState(
-        np.zeros(m), shears, shears, still, still, free, points, np.zeros(n), worn
+        none, shears, shears, still, still, free, points, np.zeros(n), worn, none, none, none
     )

@@ -10,6 +10,9 @@ import numpy as np
 from .slip_wear import SlipWear
 from .stick_slip_state import StickSlipState
 
+_ITERATIONS = 20
+_ROUNDING = 1e-12
+
 
 @dataclass(frozen=True)
 class IncrementWear:
@@ -58,23 +61,55 @@ class IncrementWear:
 
     def value(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
         """Depth at the contact, shape (m,) [m]."""
-        return self.at_contact(self.wear.depths(pressure, self._slip(last)))
+        return self.at_contact(self.depths(pressure, last))
 
     def slope(self, pressure: np.ndarray, last: StickSlipState) -> WearSlope:
         """Derivative of the depth [m/Pa]."""
-        return WearSlope(self, self.wear.slopes(pressure, self._slip(last)))
+        wearing, slip = self._wearing(pressure, last)
+        rates = self.wear.slopes(wearing, slip)
+        shared = (pressure >= self._relieved) / (1.0 + rates.sum(axis=0) * self._stiffness)
+        return WearSlope(self, rates * shared)
 
-    def profiles(self, after: StickSlipState) -> np.ndarray:
-        """Worn coefficients in the profile of each body, shape (n_wearing, m_Ψ) [m]."""
-        depths = self.wear.depths(after.pressure, self._slip(after))
+    def depths(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
+        """Depths worn off the bodies at the contact, shape (n_wearing, m) [m]."""
+        return self.wear.depths(*self._wearing(pressure, last))
+
+    def profiles(self, depths: np.ndarray) -> np.ndarray:
+        """Coefficients of the profile of each body, shape (n_wearing, m_Ψ), from `depths` [m]."""
         each = [own @ depth for own, depth in zip(self.wear_transfer, depths, strict=True)]
         return np.reshape(each, self.before.worn.shape)
 
-    def _slip(self, after: StickSlipState) -> np.ndarray:
-        """Magnitude of the weighted mean slip of the increment, shape (m,) [m]."""
-        return (
-            after.not_sticking * np.linalg.norm(after.slip - self.before.slip, axis=1) / self.areas
-        )
+    def dissipated(self, after: StickSlipState) -> np.ndarray:
+        """Energy dissipated by coefficients across the stick edge, 0 by others, (m,) [J/m²]."""
+        wearing, slip = self._wearing(after.pressure, after)
+        return np.where(self.before.crossed, self.wear.friction * wearing * slip, 0.0)
+
+    @cached_property
+    def _stiffness(self) -> np.ndarray:
+        """Pressure that a depth relieves, shape (m,) [Pa/m]."""
+        return 1.0 / self.wear.edge.opening(self.before.part)
+
+    @cached_property
+    def _relieved(self) -> np.ndarray:
+        """Pressure that no longer wears at the start of the increment, shape (m,) [Pa]."""
+        return self.before.unsheared + self._stiffness * self.before.excess
+
+    def _wearing(self, pressure: np.ndarray, last: StickSlipState) -> tuple[np.ndarray, np.ndarray]:
+        """Pressure that wears at the end of the increment, and mean slip, (m,) each [Pa, m]."""
+        moved = np.linalg.norm(last.slip - self.before.slip, axis=1) / self.areas
+        slip = last.not_sticking * moved
+        if not self.before.crossed.any():
+            return pressure, slip
+        most = np.maximum(pressure - self._relieved, 0.0)
+        wearing = most
+        for _ in range(_ITERATIONS):  # one of them for wear in proportion to the pressure
+            depth = self.wear.depths(wearing, slip).sum(axis=0)
+            rate = self.wear.slopes(wearing, slip).sum(axis=0)
+            left = wearing + self._stiffness * depth - most
+            wearing = np.clip(wearing - left / (1.0 + self._stiffness * rate), 0.0, most)
+            if np.abs(left).max() <= _ROUNDING * most.max():
+                break
+        return wearing, slip
 
 
 @dataclass(frozen=True)

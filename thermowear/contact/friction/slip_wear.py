@@ -29,6 +29,7 @@ from ..operators.pressure import function_ranges
 from ..search.contacts import Contacts
 from ..search.pairing import Pairing
 from ..wear.track import hat_functions
+from .stick_edge import StickEdge
 from .worn_surface import worn_surface
 
 
@@ -180,6 +181,8 @@ class SlipWear:
         Duration of the increment; no wear if it is 0 [s].
     repeats : int
         Number of such increments that it represents, one per cycle.
+    edge : StickEdge, optional
+        Required where states have coefficients across a stick edge.
     """
 
     laws: tuple[Law, ...]
@@ -187,6 +190,7 @@ class SlipWear:
     friction: float | np.ndarray
     duration: float
     repeats: int = 1
+    edge: StickEdge | None = None
 
     def depths_at_contact(self, worn: np.ndarray, travel: np.ndarray) -> np.ndarray:
         """Worn depths at the contact from the profiles, (n_wearing, m_Ψ) to (n_wearing, m) [m]."""

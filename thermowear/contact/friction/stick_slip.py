@@ -77,9 +77,16 @@ def advance(
     by_slip = IncrementWear(wear, state, contact.areas, travel)
     if by_slip.value(after.pressure, after).any():
         after = newton_with_wear(solve, by_slip, after, _WEAR_TOLERANCE, _NOT_CONVERGED)
-    depths = by_slip.profiles(after)
+    depths = by_slip.depths(after.pressure, after)
+    if state.crossed.any():
+        slipped = after.slip - state.slip, after.point_slip - state.point_slip
+        others = contact.lost(after.shear * ~state.crossed[:, None], *slipped)
+        across = contact.basis @ by_slip.dissipated(after)
+        excess = state.excess + np.where(state.crossed, depths.sum(axis=0), 0.0)
+        after = replace(after, excess=excess, dissipated=state.dissipated + others + across)
+    worn = state.worn + by_slip.profiles(depths)
     lost = wear.repeats * (after.dissipated - state.dissipated)
-    return replace(after, worn=state.worn + depths, dissipated=state.dissipated + lost)
+    return replace(after, worn=worn, dissipated=state.dissipated + lost)
 
 
 def follow(

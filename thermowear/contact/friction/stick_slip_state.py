@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 
 import numpy as np
 
@@ -43,6 +44,9 @@ class StickSlipState:
         stick zones scatter about zero as the slip does.
     worn : ndarray, shape (n_wearing, m_Ψ)
         Coefficients of the worn profiles so far [m].
+    part, unsheared, excess : ndarray, shape (m,)
+        Part of each coefficient that stuck in the last cycle; of those of which a part slipped,
+        the pressure that bears no shear [Pa], and the depth worn since then [m], see `stick_edge`.
     iterations : int
         Newton iterations of the last increment.
     """
@@ -56,7 +60,15 @@ class StickSlipState:
     point_slip: np.ndarray
     dissipated: np.ndarray
     worn: np.ndarray
+    part: np.ndarray
+    unsheared: np.ndarray
+    excess: np.ndarray
     iterations: int = 0
+
+    @cached_property
+    def crossed(self) -> np.ndarray:
+        """True for coefficients of which a part sticks, shape (m,)."""
+        return (self.part > 0.0) & (self.part < 1.0)
 
     @property
     def not_sticking(self) -> np.ndarray:

@@ -75,9 +75,14 @@ def wave_compliance(elastic: Elasticity, pairing: Pairing, degree: int) -> np.nd
     Contact Mechanics, 1985, section 13.2); the shortest wave has `degree` half-waves on a facet of
     length h: ``κ = π degree / h``. Every rank calls.
     """
-    softness = np.zeros(len(pairing.weights))
+    side = pairing.carrying
+    return 2 * softness(elastic, pairing) * side.face.sizes[side.facet] / (np.pi * degree)
+
+
+def softness(elastic: Elasticity, pairing: Pairing) -> np.ndarray:
+    """``1/E*`` of both bodies at the points, shape (n,) [1/Pa]. Every rank calls."""
+    found = np.zeros(len(pairing.weights))
     for side in pairing.sides:
         λ, μ, _ = lame_at_points(elastic, side)
-        softness += (λ + 2 * μ) / (4 * μ * (λ + μ))
-    side = pairing.carrying
-    return 2 * softness * side.face.sizes[side.facet] / (np.pi * degree)
+        found += (λ + 2 * μ) / (4 * μ * (λ + μ))
+    return found

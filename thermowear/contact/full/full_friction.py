@@ -140,12 +140,13 @@ class FullFriction(FrictionalContact):
         point_slip = (state.point_slip + slid)[kept]
         pressure, shear = values[0, kept], values[1:, kept].T
         sticking = np.where(solution.tractions.sticking[kept], Status.STICK, Status.SLIP)
-        lost = self.basis @ -(shear * (point_slip - state.point_slip[kept])).sum(axis=1)
+        slip = self.areas[:, None] * point_slip
+        lost = self.lost(shear, slip - state.slip, slip)
         return replace(
             state,
             pressure=pressure,
             shear=shear,
-            slip=self.areas[:, None] * point_slip,
+            slip=slip,
             motion=motion,
             force=self.modes.T @ self.stack(pressure, shear),
             status=np.where(pressure > 0.0, sticking, Status.OPEN),
@@ -153,6 +154,9 @@ class FullFriction(FrictionalContact):
             dissipated=state.dissipated + lost,
             iterations=solution.iterations,
         )
+
+    def lost(self, shear: np.ndarray, slip: np.ndarray, point_slip: np.ndarray) -> np.ndarray:
+        return self.basis @ -((shear * slip).sum(axis=1) / self.areas)
 
     @property
     def _kept(self) -> np.ndarray:

@@ -70,7 +70,9 @@ class FrettingHistory(AnalysisHistory[Increment]):
             assert self._turn is not None  # the first pass ends before the first jump
             start, end = (self._state(i).depths for i in (self._turn, state))
             self._per_cycle = (end - start) / state.jump.cycles
-            rows.append(cycle_row([self._state(i) for i in self._cycle]))
+            radii = self._stick_radii()
+            radius = radii[0] if system.model.is_pair else np.nan
+            rows.append(cycle_row([self._state(i) for i in self._cycle], radius))
         if state.restart is not None:
             self._turn = state
         return rows
@@ -120,30 +122,35 @@ class FrettingHistory(AnalysisHistory[Increment]):
             "dissipated_energy_J": last.dissipated,
             "wear_volume_per_cycle_1_m3": per_cycle[0],
             "wear_volume_per_cycle_2_m3": per_cycle[1],
-            "wear_volume_error_estimate_relative": self._state(self.last).edge_error(
-                np.array([each.state.status for each in self._cycle])
-            ),
+            "wear_volume_error_estimate_relative": self._state(self.last).edge_error(),
         }
 
     def _of_parts(self, last: LoadRow) -> dict:
         """Forces of a pair; numbers of each contact and holder of several bodies."""
         at, path, model = self._state(self.last), self._path, self._system.model
+        cycles = self.table(CycleRow)
         if model.is_pair:
             across = self.table(TangentialRow)
             return {
                 "normal_force_N": last.normal_force,
                 "friction_force_N": abs(last.tangential_force),
+                "stick_radius_m": cycles[-1].stick_radius if cycles else self._stick_radii()[0],
                 "guide_force_N": None,
                 **(tangential_summary(across[-1]) if across else {}),
             }
-        rows = zip(contact_rows(at), stick_rows(at), strict=True)
-        contacts = zip(model.interfaces, map(contact_summary, rows), strict=True)
+        rows = contact_rows(at), stick_rows(at), self._stick_radii()
+        contacts = zip(model.interfaces, map(contact_summary, *rows), strict=True)
         held = holder_rows(path.loads, at, path.reactions(self.last.state))
         holders = zip(model.holders, map(holder_summary, held), strict=True)
         return {
             "contacts": {one.name: found for one, found in contacts},
             "holders": {one.name: found for one, found in holders},
         }
+
+    def _stick_radii(self) -> list[float]:
+        """Radii of the stick zones of the current cycle, before the first one at its instant."""
+        cycle = self._cycle if self._cycle[-1].segment.cycle else self._cycle[-1:]
+        return self._path.stick_radii([each.state for each in cycle])
 
     def _slid_along(self, increment: Increment) -> np.ndarray:
         """Gap change of the worn profiles by the slip of the first bodies, coefficients [m]."""

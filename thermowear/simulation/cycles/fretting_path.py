@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from ...contact.friction.frictional_contact import unloaded
 from ...contact.friction.slip_wear import SlipWear, worn_profiles
+from ...contact.friction.stick_edge import radius_of, stick_edge
 from ...contact.friction.stick_slip import advance, follow
 from ...contact.friction.stick_slip_state import StickSlipState
+from ...contact.full.edge_deflection import softness
 from ...contact.operators.pressure import function_ranges, scaled
 from ...contact.operators.tangential import closure, tangential_frame, weak
 from ...errors import CaseError
@@ -79,9 +81,16 @@ class FrettingPath:
         self._require_support()
         weighted, depths = self._contact.weighted, scaled(system.weights, system.basis)
         self.areas = np.asarray(depths.sum(axis=0)).ravel()
-        counts = [own.stop - own.start for own in function_ranges(contacts, weighted)]
+        self._functions = function_ranges(contacts, weighted)
+        counts = [own.stop - own.start for own in self._functions]
         each = [interface.nominal_friction for interface in system.model.interfaces]
         self._friction = np.repeat(each, counts)
+        self._edge, self._turns = None, system.model.kinematics == "axisymmetric"
+        if system.model.method == "condensed":  # tractions of points have no width
+            soft = [softness(system.elastic, pairing) for pairing in contacts.each]
+            degrees = [system.model.pressure_degree(one) for one in system.model.interfaces]
+            given = np.concatenate(soft), self._friction, np.repeat(degrees, counts)
+            self._edge = stick_edge(contacts, self.basis, self.frame, *given)
         wear = JointWear(system.model, contacts)
         self._laws = tuple(wear.laws_of(counts).values())
         self.profiles = tuple(
@@ -113,6 +122,20 @@ class FrettingPath:
         """Duration of an increment [s]."""
         segment = increment.segment
         return (segment.end - segment.start) / self._settings.increments
+
+    def stick_radii(self, cycle: Sequence[StickSlipState]) -> list[float]:
+        """Radius of the stick zone of each contact, see `radius_of` [m].
+
+        Parameters
+        ----------
+        cycle : sequence of StickSlipState
+            States from the start to the end of a cycle, or a single state.
+        """
+        if self._edge is None:
+            return [math.nan] * len(self._functions)
+        zone, turns = self._edge.zone(cycle, len(cycle) > 1), self._turns
+        each = ((own.start <= zone.crossed) & (zone.crossed < own.stop) for own in self._functions)
+        return [radius_of(zone.edge[own], turns) for own in each]
 
     def travel(self, state: StickSlipState) -> np.ndarray:
         """Displacement of the first bodies along the faces, see `FrictionalContact.travel`."""
@@ -146,7 +169,13 @@ class FrettingPath:
 
     def cycle(self, state: StickSlipState, number: int, repeats: int) -> Iterator[Increment]:
         """See `cycle_jump.Cycles`."""
-        return self._along(self._path.cycle(number, repeats), state)
+        states = [state]
+        for increment in self._along(self._path.cycle(number, repeats), state):
+            states.append(increment.state)
+            ends = increment.ends_segment and increment.segment.ends_cycle
+            if ends and self._edge is not None and self._laws:
+                increment = replace(increment, state=self._edge.after(states))
+            yield increment
 
     def equilibrium(self, end: Increment, worn: np.ndarray) -> StickSlipState:
         """See `cycle_jump.Cycles`."""
@@ -165,4 +194,4 @@ class FrettingPath:
                 yield Increment(time, segment, number == count, state)
 
     def _wear(self, duration: float, repeats: int = 1) -> SlipWear:
-        return SlipWear(self._laws, self.profiles, self._friction, duration, repeats)
+        return SlipWear(self._laws, self.profiles, self._friction, duration, repeats, self._edge)

@@ -128,7 +128,7 @@ def tangential_rows(
     return rows
 
 
-def cycle_row(cycle: Sequence[FrettingState]) -> CycleRow:
+def cycle_row(cycle: Sequence[FrettingState], stick_radius: float) -> CycleRow:
     """Row of ``cycles.csv`` at the end of a jump, from the states of its last cycle."""
     last = cycle[-1]
     w, increment, end = last.system.weights, last.increment, last.depths
@@ -146,16 +146,17 @@ def cycle_row(cycle: Sequence[FrettingState]) -> CycleRow:
         max_pressure=float(pressures.max()),
         jump=jump.cycles,
         error=jump.error,
+        stick_radius=stick_radius,
     )
 
 
-def contact_summary(rows: tuple[ContactRow, StickRow]) -> dict:
+def contact_summary(row: ContactRow, stick: StickRow, radius: float) -> dict:
     """Numbers of a contact for the summary."""
-    row, stick = rows
     return {
         "normal_force_N": row.normal_force,
         "friction_force_N": abs(stick.friction_force),
         "stick_area_m2": stick.stick_area,
+        "stick_radius_m": radius,
         "dissipated_energy_J": stick.dissipated,
     }
 

@@ -16,6 +16,8 @@ from ...results import FrictionInterface
 from ..system.system import System
 from .load_path import Increment
 
+_LOCATED = 0.3
+"""Uncertainty of a stick edge that is fitted inside of coefficients of degree 1, by their width."""
 _SCAR = 0.01
 """Depth of the scar at its rim, by the largest one."""
 _SLIDES = 1 - 1e-6  # fraction of the friction limit from which a point slips
@@ -143,45 +145,44 @@ class FrettingState:
             slip_z=sz,
         )
 
-    def edge_error(self, through_cycle: np.ndarray) -> float | None:
+    def edge_error(self) -> float | None:
         """Error of the worn volume by the position of the stick edge, relative to the volume.
 
-        The edge is located to half a coefficient. One more or less that sticks changes the
-        approach, and with it all depths of the scar, by about its own depth. Where the pressure is
-        smooth across the edge, mean slip and mean pressure of a coefficient give its wear; where it
-        ends there, slip and pressure exclude each other, and coefficients across the edge wear
-        until they carry nothing. The drop of the pressure is the part that counts.
-
-        Parameters
-        ----------
-        through_cycle : ndarray of int, shape (n_increments, m)
-            `Status` of the coefficients in the last cycle.
+        The edge is located to a part of a coefficient, see `stick_edge`. Depths grow with the root
+        of the distance x from it: where it moves by δ, those of the scar, n coefficients wide,
+        change by ``δ/2x`` of themselves, by that next to the edge times ``δ/√n`` in the mean. That
+        counts the less, the smoother the pressure is across the edge.
 
         Returns
         -------
         float or None
             None without wear, and where tractions are those of points.
         """
-        lost = self.depths.sum(axis=0)
-        total = float(self.system.weights @ lost)
-        worn = self.increment.state.worn
-        if total == 0.0 or worn.shape[1] != through_cycle.shape[1]:
+        state, (basis, weights) = self.increment.state, (self.system.basis, self.system.weights)
+        lost, worn = self.depths.sum(axis=0), state.worn
+        total = float(weights @ lost)
+        if total == 0.0 or worn.shape[1] != len(state.part):
             return None
-        overlap = sp.csr_array(self.system.basis)
+        overlap = sp.csr_array(basis)
         near = overlap.T @ overlap
-        stuck = (through_cycle == Status.STICK).all(axis=0)
-        depths, pressure = worn.sum(axis=0), self.increment.state.pressure
-        edge = (near @ stuck.astype(float) > 0.0) & ~stuck & (depths > 0.0)
-        inner = (near @ edge.astype(float) > 0.0) & stuck
-        areas, error = overlap.T @ self.system.weights, 0.0
-        for own in function_ranges(self.system.contacts, self.system.basis):
-            if not edge[own].any():
+        stuck, depths = state.part > 0.0, worn.sum(axis=0)
+        beyond = (near @ stuck.astype(float) > 0.0) & ~stuck & (depths > 0.0)
+        inner = (near @ beyond.astype(float) > 0.0) & stuck
+        areas, error = overlap.T @ weights, 0.0
+        model, functions = self.system.model, function_ranges(self.system.contacts, basis)
+        for interface, own in zip(model.interfaces, functions, strict=True):
+            if not beyond[own].any():
                 continue
-            across, within = ((areas * each)[own] for each in (edge, inner))
-            depth = across @ depths[own] / across.sum()
-            mean, highest = (w @ pressure[own] / w.sum() for w in (across, within))
+            outside, within = (areas * beyond)[own], inner[own]
+            depth = outside @ depths[own] / outside.sum()
+            mean = outside @ state.pressure[own] / outside.sum()
+            highest = state.pressure[own][within].max()
             scar = areas[own][depths[own] > _SCAR * depths[own].max()].sum()
-            error += max(1.0 - mean / highest, 0.0) * depth * scar / 2
+            drop = max(1.0 - mean / highest, 0.0) if highest > 0.0 else 1.0
+            located = 1.0
+            if state.crossed[own].any():
+                located = min(1.0, _LOCATED * model.pressure_degree(interface) ** 2)
+            error += located * drop * depth * np.sqrt(scar * outside.sum())
         return float(error) / total
 
     def _shown(self, components: np.ndarray) -> np.ndarray:

@@ -1,0 +1,71 @@
+"""Edge of the stick zone inside of coefficients."""
+
+import numpy as np
+import pytest
+
+from thermowear.contact.friction.stick_edge import radius_of, stick_edge
+from thermowear.contact.friction.stick_slip import follow
+from thermowear.reference.elastic_contact.hertz import MindlinLine
+
+from .half_plane import half_plane, loaded
+
+LINE = MindlinLine(force=1e5, radius=0.05, modulus=1e11, friction=0.4)
+CELLS = 40
+
+
+class Line:
+    """Contact points on a line."""
+
+    def __init__(self, x):
+        self.points, self.weights = np.column_stack([x, 0 * x]), np.full(len(x), np.ptp(x[:2]))
+
+
+def zone_of(push):
+    """Stick zone of a cycle of a half-plane in cells, and its known half-width [m]."""
+    x, contact = half_plane(LINE, CELLS)
+    loads = [loaded(normal_force=LINE.force, tangential_force=q) for q in (0.0, push, -push, push)]
+    states = list(follow(contact, LINE.friction, loads, 4))
+    fine = np.linspace(2 * x[0] - x[1], 2 * x[-1] - x[-2], 20 * CELLS + 21)
+    hats = np.array([np.interp(fine, x, one, 0.0, 0.0) for one in np.eye(CELLS)]).T
+    along = np.tile([1.0, 0.0], (1, len(fine), 1))
+    given = np.full(len(fine), 1 / LINE.modulus), np.full(CELLS, LINE.friction), np.ones(CELLS)
+    edge = stick_edge(Line(fine), hats, along, *given)
+    return edge.zone(states[7:], True), edge, LINE.stick_half_width(push)
+
+
+@pytest.mark.parametrize("part", np.linspace(0.3, 0.5, 6))
+def test_the_edge_is_inside_of_a_cell(part):
+    """requirement: half-width of Cattaneo and Mindlin to a seventh of a cell, wherever it lies."""
+    zone, edge, known = zone_of(part * LINE.limit)
+    width = np.ptp(edge.places[10:12, 0])
+    assert abs(radius_of(zone.edge, False) - known) < width / 7
+    assert zone.part @ np.full(CELLS, width) == pytest.approx(2 * known, abs=0.3 * width)
+    assert set(zone.part[zone.part > 0.0].round(12)) - {1.0}
+    np.testing.assert_allclose(zone.part, zone.part[::-1], atol=1e-6)
+
+
+def test_the_opening_grows_as_less_sticks():
+    """requirement: none at a whole coefficient, without bound at none, that of a punch between."""
+    edge = zone_of(0.4 * LINE.limit)[1]
+    part = np.linspace(1.0, 0.0, CELLS)
+    found = edge.opening(part)
+    assert np.isinf(found[[0, -1]]).all()  # wholly stuck or slipping, they wear as all others do
+    assert np.all(np.diff(found[1:-1]) > 0.0)
+    half = edge.opening(np.full(CELLS, 0.5))
+    # beside a punch: mean opening by mean pressure of a cell half of which is under it
+    np.testing.assert_allclose(
+        half, 4 / np.pi * np.sqrt(edge.spread[:, 0, 0]) / LINE.modulus, rtol=1e-12
+    )
+
+
+@pytest.mark.parametrize("to", [np.pi, 2 * np.pi])
+def test_radii(to):
+    """requirement: of circles and of their arcs, as on half a body; half-widths; from an axis."""
+    angles = np.linspace(0.2, to, 9)
+    circle = np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
+    turned = circle @ np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+    assert radius_of(3.0 * turned + 7.0, False) == pytest.approx(3.0, rel=1e-9)
+    assert radius_of(np.array([[1.0, 1.0], [4.0, 5.0]]), False) == pytest.approx(2.5)
+    assert radius_of(np.array([[2.0, 1.0]]), True) == 2.0
+    assert np.isnan(radius_of(np.zeros((0, 3)), False))
+    assert np.isnan(radius_of(np.zeros((0, 2)), True))

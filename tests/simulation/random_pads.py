@@ -396,6 +396,6 @@ def _tables(rng, model: str, analysis: str, hot: bool, pads: int) -> dict[str, A
         if rng.random() < 0.3:
             del found["heat"]["cooling"]["plate_low"]
             found["heat"]["temperature"] = {"plate_low": ("temperature", rng.uniform(280, 330))}
-        if analysis == "transient" and rng.random() < 0.5:
+        if analysis in ("transient", "deep") and rng.random() < 0.5:
             found["heat"]["transient"] = True
     return found

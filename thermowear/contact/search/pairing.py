@@ -144,7 +144,7 @@ class Pairing:
     def position(self) -> np.ndarray:
         """Arc length along the face of body 1 from its first end, shape (n,), NaN on a surface [m].
 
-        Decreasing where body 2 carries the points, along whose face their order is.
+        For output: the points are in order along the carrying face, which may begin elsewhere.
         """
         return self.sides[0].position
 
@@ -159,9 +159,8 @@ class Pairing:
         return self.sides[1].points
 
     def locate(self, position) -> np.ndarray:
-        """Coordinates of positions along the face of a plane body 1, shape (n, 2) [m]."""
-        order = np.argsort(self.position, kind="stable")
-        columns = [np.interp(position, self.position[order], x[order]) for x in self.points.T]
+        """Coordinates of positions along the face of a plane body, shape (n, 2) [m]."""
+        columns = [np.interp(position, self.position, x) for x in self.points.T]
         return np.column_stack(columns)
 
 

@@ -31,7 +31,7 @@ from ..search.contacts import Contacts
 from .stick_slip_state import Status, StickSlipState
 
 _END = 0.5
-"""Where the last coefficient of a punch ends, beyond its place, by its width over the degree of the
+"""End of a punch beyond the place of its last coefficient, by its width over the degree of the
 pressure."""
 _OPENING = 4 / np.pi
 """ε_0 by the width over E*, measured against closed forms of punches on half-planes."""

@@ -94,7 +94,7 @@ HEADS = {
     "growth": "speed_factor,growth_rate_per_s,frequency_rad_per_s,growth_rate_with_wear_per_s,"
     "frequency_with_wear_rad_per_s",
     "cycles": "cycle,time_s,wear_volume_1_m3,wear_volume_2_m3,dissipated_J,max_wear_1_m,"
-    "max_wear_2_m,contact_area_m2,max_pressure_Pa,jump,error",
+    "max_wear_2_m,contact_area_m2,max_pressure_Pa,jump,error,stick_radius_m",
     "track": "x_m,wear_2_m,wear_rate_2_m_per_s",
     "heat": "time_s,speed_m_per_s,normal_force_N,friction_power_W,heat_in_J,heat_stored_J,"
     "heat_lost_J,balance_relative_error,max_temperature_1_K,max_temperature_2_K,mean_temperature_1_K,"

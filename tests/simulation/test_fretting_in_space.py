@@ -12,11 +12,15 @@ from thermowear.contact.friction.stick_slip import FullSliding, follow
 from thermowear.contact.friction.stick_slip_state import Loads
 from thermowear.contact.operators.tangential import tangential_frame
 from thermowear.geometry.geometries.rectangular_punch import RectangularPunch
+from thermowear.reference.elastic_contact.fretting_sphere import FrettingSphere
+from thermowear.reference.elastic_contact.mindlin_sphere import MindlinSphere
 from thermowear.simulation.cycles.held_loads import HeldLoads
 
+from ..case.starter import solved
 from ..systems import built
 
 MU, FORCE, K = 0.4, 1000.0, 1e-14
+VOLUME = 0.07  # of those of the march
 SIZES = {"size_x": "4 mm", "size_y": "4 mm", "height": "3 mm"}
 SIZES |= {"block_x": "8 mm", "block_y": "8 mm", "block_height": "4 mm"}
 STEEL = {"young_modulus": "200 GPa", "poisson_ratio": 0.3}
@@ -255,6 +259,58 @@ def test_cycles_are_jumped():
     assert coarse[-1].cycle == 1000
     assert len(coarse) < 25 < len(fine)
     assert coarse[-1].wear_volume_1 == pytest.approx(fine[-1].wear_volume_1, rel=3e-2, abs=0.0)
+
+
+# ---- a sphere in partial slip ----
+
+SPHERE = MindlinSphere(20.0, 0.01, ((2e11, 0.3), (2e11, 0.3)), 0.6)
+SWINGS = {
+    "load.history": {
+        "time": ["0 ms", "12.5 ms", "37.5 ms", "62.5 ms"],
+        "tangential_displacement": ["0 um", "0.3495 um", "-0.3495 um", "0.3495 um"],
+    },
+    "analysis.output_times": [],
+}
+
+
+def radius_at(result):
+    """Stick radius by Cattaneo and Mindlin under the friction force on both halves [m]."""
+    part = 2 * abs(result.summary["tangential_force_N"]) / SPHERE.limit
+    return SPHERE.contact_radius * (1 - part) ** (1 / 3)
+
+
+def test_the_stick_radius_of_a_sphere_is_interpolated():
+    """requirement: within 1 % where elements are a tenth of the contact radius wide."""
+    result = solved("sphere-fretting", SWINGS | {"wear.cycles": 1})
+    found = result.summary["stick_radius_m"]
+    assert found == pytest.approx(radius_at(result), rel=1e-2, abs=0.0)
+    assert result.friction.cycles[-1].stick_radius == found
+
+
+@pytest.mark.slow
+def test_a_sphere_frets_until_nothing_wears():
+    """requirement: volumes and stick radius of a march by dimensionality reduction until the end.
+
+    The amplitude at the contact is that of the force in the first cycle, 2 % less than that of
+    the holder.
+    """
+    numbers = [311, 1700, 4647, 9576, 13157, 17885, 24185, 40000]
+    times = [f"{0.0125 + 0.05 * number} s" for number in numbers[:-1]]
+    changes = SWINGS | {"wear.cycles": numbers[-1], "analysis.output_times": times}
+    result = solved("sphere-fretting", changes)
+    first = next(row for row in result.friction.rows if row.cycle == 1 and row.time > 0.06)
+    amplitude = SPHERE.displacement(2 * abs(first.tangential_force))
+    assert amplitude == pytest.approx(0.342e-6, rel=5e-3, abs=0.0)
+    known = FrettingSphere(SPHERE, amplitude, 2e-13, points=300)
+    depths = known.depths(numbers)
+    rows = {row.cycle: row for row in result.friction.cycles}
+    found = np.array([2 * (rows[n].wear_volume_1 + rows[n].wear_volume_2) for n in numbers])
+    error = result.summary["wear_volume_error_estimate_relative"]
+    np.testing.assert_allclose(found, known.volume(depths), rtol=VOLUME)
+    assert error > abs(found[-1] / known.volume(depths)[-1] - 1)
+    for depth, number in ((depths[0], 311), (depths[-1], 40000)):
+        radius = known.contact(depth).stick_radius
+        assert rows[number].stick_radius == pytest.approx(radius, rel=1e-2, abs=0.0)
 
 
 # ---- requests that are refused ----

@@ -67,7 +67,8 @@ class IncrementWear:
         """Derivative of the depth [m/Pa]."""
         wearing, slip = self._wearing(pressure, last)
         rates = self.wear.slopes(wearing, slip)
-        shared = (pressure >= self._relieved) / (1.0 + rates.sum(axis=0) * self._stiffness)
+        wears = ~self.before.crossed | (pressure >= self._relieved)
+        shared = wears / (1.0 + rates.sum(axis=0) * self._stiffness)
         return WearSlope(self, rates * shared)
 
     def depths(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
@@ -87,7 +88,8 @@ class IncrementWear:
     @cached_property
     def _stiffness(self) -> np.ndarray:
         """Pressure that a depth relieves, shape (m,) [Pa/m]."""
-        return 1.0 / self.wear.edge.opening(self.before.part)
+        edge = self.wear.edge
+        return np.zeros(len(self.areas)) if edge is None else 1.0 / edge.opening(self.before.part)
 
     @cached_property
     def _relieved(self) -> np.ndarray:
@@ -98,8 +100,10 @@ class IncrementWear:
         """Pressure that wears at the end of the increment, and mean slip, (m,) each [Pa, m]."""
         moved = np.linalg.norm(last.slip - self.before.slip, axis=1) / self.areas
         slip = last.not_sticking * moved
-        if not self.before.crossed.any():
+        edge = self.wear.edge
+        if edge is None or not self.before.crossed.any():
             return pressure, slip
+        slip = edge.slip(slip, last.pressure, self.before.part)
         most = np.maximum(pressure - self._relieved, 0.0)
         wearing = most
         for _ in range(_ITERATIONS):  # one of them for wear in proportion to the pressure

@@ -182,7 +182,7 @@ class SlipWear:
     repeats : int
         Number of such increments that it represents, one per cycle.
     edge : StickEdge, optional
-        Required where states have coefficients across a stick edge.
+        None: coefficients wear as a whole.
     """
 
     laws: tuple[Law, ...]

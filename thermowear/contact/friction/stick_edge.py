@@ -199,6 +199,28 @@ class StickEdge:
         slips = np.divide(1.0 - part, part, out=np.full(len(part), np.inf), where=crossed)
         return _OPENING * size * self.softness * slips
 
+    def slip(self, mean: np.ndarray, pressure: np.ndarray, part: np.ndarray) -> np.ndarray:
+        """Mean slips (m,) where coefficients stick in these parts, from those of all of them [m].
+
+        Where the pressure is smooth, the slips of all coefficients together are right. Where it is
+        gone beyond the edge, a coefficient that sticks by its mean slips in its outer part, as the
+        slip grows with the power 3/2 of the distance.
+
+        Parameters
+        ----------
+        mean, pressure, part : ndarray, shape (m,)
+            Mean slip [m], pressure [Pa], and part that sticks.
+        """
+        crossed, slips = np.flatnonzero((part > 0.0) & (part < 1.0)), mean > 0.0
+        near, outside, found = self._next[crossed], 1.0 - part[crossed], mean.copy()
+        beyond = near.multiply(mean).max(axis=1).toarray().ravel()
+        pressed = near @ (slips * pressure) / np.maximum(near @ slips.astype(float), 1.0)
+        own = np.maximum(pressure[crossed], np.finfo(float).tiny)
+        share = outside**2.5 / ((1.0 + outside) ** 2.5 - outside**2.5)
+        share *= np.maximum(1.0 - pressed / own, 0.0)
+        found[crossed] = np.maximum(mean[crossed], share * beyond)
+        return found
+
 
 def stick_edge(
     contacts: Contacts,

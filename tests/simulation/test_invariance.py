@@ -21,7 +21,7 @@ from ..test_parallel import same_on_two_ranks
 from .invariance import CHANGES, LABELS, MOVED, differences, run, within_estimates
 from .invariance_on_ranks import computed
 
-MANY = int(os.environ.get("THERMOWEAR_INVARIANCE", "125"))
+MANY = int(os.environ.get("THERMOWEAR_INVARIANCE", "134"))
 FIRST = int(os.environ.get("THERMOWEAR_SEED", "0"))
 _FOUND = (203, "rotation"), (306, "rotation")
 """What random cases found: pressures of rounding, and a size along the axes of coordinates."""

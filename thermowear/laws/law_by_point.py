@@ -111,4 +111,5 @@ def _joined_layers(each: Sequence[LayeredWear], counts: Sequence[int]) -> Layere
     return LayeredWear(
         tuple(np.repeat(layer, counts) for layer in zip(*thickness, strict=True)),
         tuple(joined_laws(layer, counts) for layer in zip(*laws, strict=True)),
+        np.concatenate([np.zeros(n) + f.variation for f, n in zip(each, counts, strict=True)]),
     )

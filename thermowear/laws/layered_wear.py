@@ -7,16 +7,31 @@ evaluates it, so that no event has to be located and a point that passes a borde
 step reaches its exact depth. If the laws differ by a coefficient only, ``r_i = k_i f(p, v, …)``,
 the depth is a function of the dose ``∫ f dt`` alone, whatever the pressure does in that time, and
 ``Σ d_i / k_i`` over the depths d_i worn of the layers is the dose: the balance of volumes is exact.
+
+A contact point stands for an area, over which the depth varies: the border of a layer passes it
+while the depth of the point goes on by that variation. Meanwhile the layer covers a share f of the
+area, which falls from 1 to 0, and both materials wear at one rate r: with linear laws under the
+pressures ``r/k_1`` and ``r/k_2``, whose mean is that of the point,
+
+    1/r = f/r_1 + (1 - f)/r_2,
+
+with the rates r_1 and r_2 of both laws at the pressure of the point. The pressures of the layers
+that are left would saw if the border moved by whole points. Points weight their surroundings by
+hat functions; f is constant in each of `_PARTS` parts of the border, which are layers of their own.
 """
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from .interfaces import Law, LocalState
+
+_PARTS = 16
+"""Parts of a border of a layer, of constant shares of both materials."""
 
 
 @dataclass(frozen=True)
@@ -31,10 +46,14 @@ class LayeredWear:
     laws : tuple of Law
         Law of each layer and, last, of the substrate. A law that depends on the depth gets the
         depth below the unworn surface.
+    variation : float or ndarray, shape (n,)
+        Range of depths in the area of each point, in which it passes a border; at most the thinner
+        of both layers [m].
     """
 
     thickness: tuple[float | np.ndarray, ...]
     laws: tuple[Law, ...]
+    variation: float | np.ndarray = 0.0
 
     @property
     def variables(self) -> frozenset[str]:
@@ -57,7 +76,7 @@ class LayeredWear:
 
         Shape (n_layers + 1, 1) or, by point, (n_layers + 1, n).
         """
-        each = [np.atleast_1d(thickness) for thickness in self.thickness]
+        each = self._each
         last = np.full_like(each[0], np.inf) if each else np.array([np.inf])
         return np.cumsum([*each, last], axis=0)
 
@@ -66,16 +85,49 @@ class LayeredWear:
         """Thickness of all layers together, shape (1,) or (n,) [m]."""
         return self.borders[-2] if self.thickness else np.zeros(1)
 
+    @cached_property
+    def _ends(self) -> np.ndarray:
+        """Depth of the lower end of each part, see `_shares`, shape (n_parts, n or 1) [m]."""
+        if not self.thickness:
+            return self.borders
+        thinnest = np.stack(np.broadcast_arrays(*self._each)).min(axis=0)
+        half = np.minimum(thinnest, self.variation) / 2
+        steps = np.outer(2 * np.arange(_PARTS + 1) / _PARTS - 1, half)
+        passed = [border + steps for border in self.borders[:-1]]
+        return np.vstack([*passed, np.full_like(passed[0][:1], np.inf)])
+
+    @property
+    def _each(self) -> list[np.ndarray]:
+        """Thickness of each layer."""
+        return [np.atleast_1d(thickness) for thickness in self.thickness]
+
+    @cached_property
+    def _shares(self) -> np.ndarray:
+        """Share of each layer in the parts, (n_parts, n_layers + 1): itself, then its border."""
+        count, u = len(self.laws), (2 * np.arange(_PARTS) + 1) / _PARTS - 1
+        share = 0.5 + u - u * np.abs(u) / 2  # part of the hat function 1 - |u| below
+        rows = [np.eye(count)[:1]]
+        for above, below in itertools.pairwise(np.eye(count)):
+            rows += [np.outer(1 - share, above) + np.outer(share, below), below[None]]
+        return np.vstack(rows)
+
+    @property
+    def through(self) -> np.ndarray:
+        """Depth at which no layer is left, shape (1,) or (n,) [m]."""
+        return self._ends[-2] if self.thickness else np.zeros(1)
+
     def reached(self, depth: np.ndarray) -> np.ndarray:
         """Index of the layer that a depth has reached; a border belongs to the layer below it."""
-        count, points = self.borders.shape
-        borders = self.borders.reshape(count, *[1] * (np.ndim(depth) - 1), points)
-        return (np.asarray(depth) >= borders).sum(axis=0)
+        return self._beyond(self.borders, np.asarray(depth))
+
+    def _beyond(self, ends: np.ndarray, depth: np.ndarray) -> np.ndarray:
+        ends = ends.reshape(len(ends), *[1] * (np.ndim(depth) - 1), ends.shape[1])
+        return (depth >= ends).sum(axis=0)
 
     def worn(self, depth: np.ndarray) -> np.ndarray:
         """Depth worn of each layer and of the substrate, shape (n_layers + 1, n) [m]."""
-        upper = np.vstack([np.zeros_like(self.borders[:1]), self.borders[:-1]])
-        return np.clip(depth, upper, self.borders) - upper
+        upper = np.vstack([np.zeros_like(self._ends[:1]), self._ends[:-1]])
+        return self._shares.T @ (np.clip(depth, upper, self._ends) - upper)
 
     def value(self, at: LocalState) -> np.ndarray:
         """Depth worn per time at the points [m/s]."""
@@ -86,9 +138,21 @@ class LayeredWear:
         return self._reached(at, [law.slope(at) for law in self.laws])
 
     def _reached(self, at: LocalState, values: list[np.ndarray]) -> np.ndarray:
-        """Values of the layers reached, from those of each law."""
-        layer, *each = np.broadcast_arrays(self.reached(np.asarray(at.depth)), *values)
-        return np.take_along_axis(np.stack(each), layer[None], axis=0)[0]
+        """Values of the part reached, from those of each law."""
+        part, *each = np.broadcast_arrays(self._beyond(self._ends, np.asarray(at.depth)), *values)
+        return np.take_along_axis(self._mixed(np.stack(each)), part[None], axis=0)[0]
+
+    def _mixed(self, rates: np.ndarray) -> np.ndarray:
+        """Rate of each part from those of the layers (n_layers + 1, ...), harmonic means."""
+        with np.errstate(divide="ignore"):
+            times = np.where(rates > 0.0, 1 / rates, np.inf)
+            each = [
+                rates[shares.argmax()]
+                if shares.max() == 1.0
+                else 1 / sum(f * time for f, time in zip(shares, times, strict=True) if f > 0.0)
+                for shares in self._shares
+            ]
+        return np.stack(each)
 
     def passage(self, depth: np.ndarray, rates: np.ndarray, time: float) -> LayerPassage:
         """Wear through the layers at constant rates.
@@ -102,41 +166,48 @@ class LayeredWear:
         time : float
             Duration [s].
         """
-        spent, gained = np.zeros_like(rates), np.zeros_like(rates)
+        mixed = self._mixed(rates)
+        spent, gained = np.zeros_like(mixed), np.zeros_like(mixed)
         left, last = np.full(len(depth), time), np.zeros(len(depth))
-        upper = np.vstack([np.full_like(self.borders[:1], -np.inf), self.borders[:-1]])
-        for layer, (begin, end) in enumerate(zip(upper, self.borders, strict=True)):
-            rate, thick = rates[layer], np.maximum(end - np.maximum(depth, begin), 0.0)
+        upper = np.vstack([np.full_like(self._ends[:1], -np.inf), self._ends[:-1]])
+        for part, (begin, end) in enumerate(zip(upper, self._ends, strict=True)):
+            rate, thick = mixed[part], np.maximum(end - np.maximum(depth, begin), 0.0)
             with np.errstate(divide="ignore", invalid="ignore"):
                 needed = np.where(thick > 0.0, thick / rate, 0.0)
             ends = (left > 0.0) & (needed >= left)
-            spent[layer] = np.minimum(left, needed)
-            gained[layer] = np.where(needed > left, left * rate, thick)
+            spent[part] = np.minimum(left, needed)
+            gained[part] = np.where(needed > left, left * rate, thick)
             last[ends] = rate[ends]
-            left = left - spent[layer]
-        return LayerPassage(spent, gained, rates, last)
+            left = left - spent[part]
+        return LayerPassage(spent, gained, mixed, last, rates, self._shares)
 
 
 @dataclass(frozen=True)
 class LayerPassage:
-    """Wear of points through the layers in a time with constant rates.
+    """Wear of points through the layers and their borders in a time with constant rates.
 
     Attributes
     ----------
-    spent : ndarray, shape (n_layers + 1, n)
-        Time in each layer [s].
-    gained : ndarray, shape (n_layers + 1, n)
-        Depth worn of each layer in that time [m].
+    spent : ndarray, shape (n_parts, n)
+        Time in each layer and in each part of the borders [s].
+    gained : ndarray, shape (n_parts, n)
+        Depth worn of each part in that time [m].
+    mixed : ndarray, shape (n_parts, n)
+        Rate of each part [m/s].
+    last : ndarray, shape (n,)
+        Rate of the part reached at the end [m/s].
     rates : ndarray, shape (n_layers + 1, n)
         Rate of each layer [m/s].
-    last : ndarray, shape (n,)
-        Rate of the layer reached at the end [m/s].
+    shares : ndarray, shape (n_parts, n_layers + 1)
+        Share of each layer in the parts.
     """
 
     spent: np.ndarray
     gained: np.ndarray
-    rates: np.ndarray
+    mixed: np.ndarray
     last: np.ndarray
+    rates: np.ndarray
+    shares: np.ndarray
 
     @property
     def depth(self) -> np.ndarray:
@@ -147,12 +218,20 @@ class LayerPassage:
     def by_rate(self) -> np.ndarray:
         """Derivative of the depth with respect to the rate of each layer, (n_layers + 1, n) [s].
 
-        A layer that is left sooner leaves more time to the last one:
-        ``∂d/∂r_i = spent_i r_last / r_i``.
+        A part that is left sooner leaves more time to the last one: ``∂d/∂r = spent r_last / r``
+        for its rate r, whose derivative by that of layer i is ``f_i (r / r_i)²``.
         """
         with np.errstate(divide="ignore", invalid="ignore"):
-            scale = np.where(self.rates == self.last, 1.0, self.last / self.rates)
-        return np.where(self.spent > 0.0, self.spent * scale, 0.0)
+            scale = np.where(self.mixed == self.last, 1.0, self.last / self.mixed)
+            by_part = np.where(self.spent > 0.0, self.spent * scale, 0.0)
+            result = np.zeros_like(self.rates)
+            for part, shares in enumerate(self.shares):
+                for layer in np.flatnonzero(shares):
+                    ratio = np.where(
+                        self.mixed[part] > 0.0, self.mixed[part] / self.rates[layer], 1.0
+                    )
+                    result[layer] += shares[layer] * ratio**2 * by_part[part]
+        return result
 
 
 def layers_of(law: Law) -> LayeredWear:

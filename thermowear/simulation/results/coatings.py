@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -32,10 +32,18 @@ def layers(model: Model) -> dict[Face, LayeredWear]:
 def coating_left(system: System, worn: np.ndarray) -> np.ndarray:
     """Thickness left of all layers at worn depths (2, n) [m]; NaN for a body without layers."""
     left = np.full(worn.shape, np.nan)
-    for (index, side), each in layers(system.model).items():
-        own = system.contacts.ranges[index]
-        left[side, own] = np.maximum(each.total - worn[side, own], 0.0)
+    for index, side in layers(system.model):
+        own, law = system.contacts.ranges[index], _law_at(system, index, side)
+        rest = law.total - law.worn(worn[side, own])[:-1].sum(axis=0)
+        left[side, own] = np.where(worn[side, own] < law.through, np.maximum(rest, 0.0), 0.0)
     return left
+
+
+def _law_at(system: System, index: int, side: int) -> LayeredWear:
+    """Law of the points of a coated side of an interface."""
+    law, own = layers_of(system.laws[side]), system.contacts.ranges[index]
+    variation = np.broadcast_to(law.variation, len(system.weights))[own]
+    return replace(layers(system.model)[index, side], variation=variation)
 
 
 def layer_volumes(
@@ -55,9 +63,10 @@ def layer_volumes(
         areas have changed slightly on moved meshes [m³].
     """
     found, own = {}, system.contacts.ranges[index]
-    for (other, side), each in layers(system.model).items():
+    for other, side in layers(system.model):
         if other == index:
-            parts = each.worn(worn[side, own]) @ system.worn_areas[side, own]
+            depths = _law_at(system, index, side).worn(worn[side, own])
+            parts = depths @ system.worn_areas[side, own]
             scale = volumes[side] / parts.sum() if parts.any() else 1.0
             found[f"layer_volumes_{side + 1}_m3"] = [float(scale * part) for part in parts]
     return found

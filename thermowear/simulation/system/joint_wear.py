@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +13,7 @@ from ...contact.search.pairing import Pairing
 from ...laws.distribution import IN_PLACE, Distribution, joined_distributions
 from ...laws.interfaces import Law
 from ...laws.law_by_point import joined_laws
+from ...laws.layered_wear import LayeredWear
 from ...model.face_wear import FaceWear, Wear
 from ...model.model import Model
 from ...model.tracks import EvenTrack
@@ -39,10 +40,7 @@ class JointWear:
     def laws_of(self, counts: Sequence[int]) -> dict[int, Law]:
         """Wear laws, likewise, of numbers of points or pressure functions of each interface."""
         return {
-            side: joined_laws(
-                [None if wear is None else wear.law_at(p.groups[side]) for wear, p in each],
-                counts,
-            )
+            side: joined_laws([_law(wear, pairing, side) for wear, pairing in each], counts)
             for side, each in self._sides.items()
         }
 
@@ -83,6 +81,29 @@ class JointWear:
         worn = sorted({side for interface in interfaces for side in interface.wear})
         pairs = list(zip(interfaces, self.contacts.each, strict=True))
         return {side: [(one.wear.get(side), pairing) for one, pairing in pairs] for side in worn}
+
+
+def _law(wear: Wear | None, pairing: Pairing, side: int) -> Law | None:
+    """Law of a side of an interface; None where it does not wear."""
+    if wear is None:
+        return None
+    law = wear.law_at(pairing.groups[side])
+    if not (isinstance(law, LayeredWear) and wear.in_place):  # tracks are worn evenly
+        return law
+    return replace(law, variation=depth_variation(pairing))
+
+
+def depth_variation(pairing: Pairing) -> np.ndarray:
+    """Range of the wear depth between the neighbours of each point, (n,) [m].
+
+    That of the unworn gap: constant in time, as the depth has to be a function of the dose alone.
+    """
+    facet, gap, area = pairing.carrying.facet, pairing.gap, pairing.weights
+    low, high = np.full((2, facet.max() + 1), [[np.inf], [-np.inf]])
+    np.minimum.at(low, facet, gap)
+    np.maximum.at(high, facet, gap)
+    share = area / np.bincount(facet, area)[facet]
+    return 2 * (high - low)[facet] * share ** (1 / pairing.carrying.face.dim)
 
 
 def _track(wear: Wear | None) -> str:

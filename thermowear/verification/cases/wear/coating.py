@@ -112,9 +112,12 @@ class CoatedRun:
         ball, times = self.ball, [*result.outputs, result.history[-1].time]
         states = zip(times, [*result.outputs.values(), result.interface], strict=True)
         for time, state in states:
-            depth = state.wear_1 if self.body == "sphere" else state.wear_2
-            lost = (state.weight @ (depth - ball.thickness).clip(0.0)) / ball.substrate
-            lost += (state.weight @ depth.clip(0.0, ball.thickness)) / ball.coating
+            first = self.body == "sphere"
+            depth = state.wear_1 if first else state.wear_2
+            left = state.coating_left_1 if first else state.coating_left_2
+            coating = ball.thickness - left
+            dose = coating / ball.coating + (depth - coating) / ball.substrate
+            lost = float(state.weight @ dose)
             distance = self.speed * time
             done = ball.force * distance
             quantity = f"V_c/k_c + V_s/k_s after {distance:.4g} m{note} [N m]"

@@ -38,7 +38,7 @@ def kinds(summary):
     ("starter", "changes", "expected"),
     [
         ("two-shoe-drum", {"mesh": {"degree": 5, "elements": 6}}, MECHANICS | {"heat_balance"}),
-        ("two-pads-3d", {}, MECHANICS | {"heat_balance"}),
+        ("two-pads-3d", {"mesh.degree": 2}, MECHANICS | {"heat_balance"}),
         ("disk-brake-two-pads", COARSE, {"force_balance", "heat_balance"}),
         ("two-shoe-drum", WORN_DRUM, MECHANICS | {"wear_volume"}),
     ],

@@ -155,6 +155,7 @@ def test_moments_of_a_force_beside_the_axis():
             | {"free": ["z"], "direction": [0.0, 0.0, 1.0]}
             | pivot,
             "holders.hub": {"surface": "DISK_INSIDE", "free": []},
+            "mesh.degree": 2,
             "analysis": {"type": "initial"},
         }
         summary = solved("two-pads-3d", changes).summary

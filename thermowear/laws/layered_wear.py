@@ -106,9 +106,10 @@ class LayeredWear:
         """Share of each layer in the parts, (n_parts, n_layers + 1): itself, then its border."""
         count, u = len(self.laws), (2 * np.arange(_PARTS) + 1) / _PARTS - 1
         share = 0.5 + u - u * np.abs(u) / 2  # part of the hat function 1 - |u| below
-        rows = [np.eye(count)[:1]]
-        for above, below in itertools.pairwise(np.eye(count)):
-            rows += [np.outer(1 - share, above) + np.outer(share, below), below[None]]
+        units = np.split(np.eye(count), count)
+        rows = [units[0]]
+        for above, below in itertools.pairwise(units):
+            rows += [np.outer(1 - share, above) + np.outer(share, below), below]
         return np.vstack(rows)
 
     @property

@@ -108,11 +108,10 @@ class StickEdge:
         """End of a cycle with its stick zone, from the states from its start to its end."""
         last, zone = cycle[-1], self.zone(cycle, True)
         excess = np.where(zone.part > 0.0, last.excess, 0.0)
-        begun = (excess > 0.0) & (zone.part < 1.0)
-        held = np.where((zone.part > 0.0) & (zone.part < 1.0), zone.unsheared, 0.0)
-        return replace(
-            last, part=zone.part, excess=excess, unsheared=np.where(begun, last.unsheared, held)
-        )
+        crossed = (zone.part > 0.0) & (zone.part < 1.0)
+        found = np.where(crossed, zone.unsheared, 0.0)
+        unsheared = np.where(excess > 0.0, last.unsheared, found)
+        return replace(last, part=zone.part, excess=excess, unsheared=unsheared)
 
     def zone(self, states: Sequence[StickSlipState], is_cycle: bool) -> StickZone:
         """Stick zone of the states from the start to the end of a cycle, or of one state."""

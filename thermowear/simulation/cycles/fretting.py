@@ -21,6 +21,7 @@ from .fretting_rows import (
     cycle_row,
     holder_rows,
     holder_summary,
+    known,
     load_row,
     stick_rows,
     tangential_rows,
@@ -131,10 +132,11 @@ class FrettingHistory(AnalysisHistory[Increment]):
         cycles = self.table(CycleRow)
         if model.is_pair:
             across = self.table(TangentialRow)
+            radius = cycles[-1].stick_radius if cycles else self._stick_radii()[0]
             return {
                 "normal_force_N": last.normal_force,
                 "friction_force_N": abs(last.tangential_force),
-                "stick_radius_m": cycles[-1].stick_radius if cycles else self._stick_radii()[0],
+                "stick_radius_m": known(radius),
                 "guide_force_N": None,
                 **(tangential_summary(across[-1]) if across else {}),
             }

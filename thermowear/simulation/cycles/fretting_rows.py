@@ -156,9 +156,14 @@ def contact_summary(row: ContactRow, stick: StickRow, radius: float) -> dict:
         "normal_force_N": row.normal_force,
         "friction_force_N": abs(stick.friction_force),
         "stick_area_m2": stick.stick_area,
-        "stick_radius_m": radius,
+        "stick_radius_m": known(radius),
         "dissipated_energy_J": stick.dissipated,
     }
+
+
+def known(value: float) -> float | None:
+    """Number for the summary; None for NaN."""
+    return None if np.isnan(value) else value
 
 
 def holder_summary(row: HolderRow) -> dict:

@@ -128,7 +128,9 @@ class StickEdge:
             if deeper.sum() < count // 2:
                 break
             square, smooth, inner = self.means @ square, self.means @ smooth, deeper
-        inside, edge, cut = np.flatnonzero(inner), [], []
+        inside = np.flatnonzero(inner)
+        edge: list[np.ndarray] = []
+        cut: list[int] = []
         if len(inside) >= count // 2:
             tree = cKDTree(self.places[inside])
             nearest = tree.query(self.places[crossed], min(count, len(inside)))[1]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...contact.friction.frictional_contact import unloaded
 from ...contact.friction.slip_wear import SlipWear, worn_profiles
-from ...contact.friction.stick_edge import radius_of, stick_edge
+from ...contact.friction.stick_edge import StickEdge, radius_of, stick_edge
 from ...contact.friction.stick_slip import advance, follow
 from ...contact.friction.stick_slip_state import StickSlipState
 from ...contact.full.edge_deflection import softness
@@ -85,7 +85,8 @@ class FrettingPath:
         counts = [own.stop - own.start for own in self._functions]
         each = [interface.nominal_friction for interface in system.model.interfaces]
         self._friction = np.repeat(each, counts)
-        self._edge, self._turns = None, system.model.kinematics == "axisymmetric"
+        self._edge: StickEdge | None = None
+        self._turns = system.model.kinematics == "axisymmetric"
         if system.model.method == "condensed":  # tractions of points have no width
             soft = [softness(system.elastic, pairing) for pairing in contacts.each]
             degrees = [system.model.pressure_degree(one) for one in system.model.interfaces]

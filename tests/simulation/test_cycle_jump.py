@@ -96,6 +96,26 @@ def test_the_tolerance_controls_the_error():
     assert coarse < 5e-3
 
 
+class Crossed(Growing):
+    """The stick edge crosses the third coefficient, which wears fast from some time on."""
+
+    def cycle(self, state, number, repeats):
+        for increment in super().cycle(state, number, repeats):
+            of_edge = np.array([0.0, 0.0, 0.5])
+            worn = increment.state.worn + (increment.state.worn[:, :1] > 20.0) * [0.0, 0.0, 5.0]
+            yield replace(increment, state=replace(increment.state, part=of_edge, worn=worn))
+
+
+def test_the_stick_edge_does_not_shorten_jumps():
+    """requirement: depths of what it crosses change at once, however short a jump is."""
+    cycles = Crossed()
+    found = run(cycles)
+    assert len(cycles.computed) < 150
+    inside = (slice(None), slice(0, 2))
+    known = one_by_one().worn[inside]
+    assert np.abs(found[-1].state.worn[inside] - known).max() / known.max() < 2e-3
+
+
 def test_the_estimate_is_that_of_the_halves():
     """requirement: what is reported is the error of the parts of a jump before it is taken out."""
     for start, span in ((20, 10), (200, 100), (30, 7)):

@@ -218,7 +218,7 @@ class StickEdge:
         pressed = near @ (slips * pressure) / np.maximum(near @ slips.astype(float), 1.0)
         own = np.maximum(pressure[crossed], np.finfo(float).tiny)
         share = outside**2.5 / ((1.0 + outside) ** 2.5 - outside**2.5)
-        share *= np.maximum(1.0 - pressed / own, 0.0)
+        share *= np.maximum(own - pressed, 0.0) / own
         found[crossed] = np.maximum(mean[crossed], share * beyond)
         return found
 

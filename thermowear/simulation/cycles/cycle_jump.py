@@ -163,9 +163,18 @@ class _TwoPartJump:
 
     @property
     def error(self) -> float:
-        """Largest excess depth relative to the largest depth; 0 without wear."""
+        """Largest excess depth relative to the largest depth; 0 without wear.
+
+        But for coefficients across the stick edge: as it passes from one to the next, their depths
+        change at once, however short the jump. What that costs is estimated with the edge.
+        """
         largest = float(self.end.state.worn.max(initial=0.0))
-        return float(np.abs(self.excess).max(initial=0.0)) / largest if largest > 0.0 else 0.0
+        if largest == 0.0:
+            return 0.0
+        each = (self.start.crossed, self.whole.crossed, self.end.state.crossed)
+        across = np.any(each, axis=0)
+        excess = self.excess[:, ~across] if across.any() else self.excess
+        return float(np.abs(excess).max(initial=0.0)) / largest
 
     def corrected(self, cycles: Cycles) -> Increment:
         """End of the second part with the estimated error subtracted."""

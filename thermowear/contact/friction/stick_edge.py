@@ -134,7 +134,7 @@ class StickEdge:
         if len(inside) >= count // 2:
             tree = cKDTree(self.places[inside])
             nearest = tree.query(self.places[crossed], min(count, len(inside)))[1]
-            for number, near in zip(crossed.tolist(), inside[nearest], strict=True):
+            for number, near in zip(map(int, crossed), inside[nearest], strict=True):
                 found = self._distance(number, near, square, smooth)
                 if found is None:
                     continue

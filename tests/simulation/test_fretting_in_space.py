@@ -310,7 +310,7 @@ def test_a_sphere_frets_until_nothing_wears():
     assert error > abs(found[-1] / known.volume(depths)[-1] - 1)
     for depth, number in ((depths[0], 311), (depths[-1], 40000)):
         radius = known.contact(depth).stick_radius
-        assert rows[number].stick_radius == pytest.approx(radius, rel=1e-2, abs=0.0)
+        assert rows[number].stick_radius == pytest.approx(radius, rel=2e-2, abs=0.0)
 
 
 # ---- requests that are refused ----

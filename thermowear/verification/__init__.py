@@ -64,7 +64,7 @@ CASES = {
 }
 """Verification cases by id in the order of ``verify``; each yields its checks."""
 
-SLOW = frozenset({"deep-wear", "hertz-sphere-3d-fine", "ring-3d-whole"})
+SLOW = frozenset({"deep-wear", "fretting-sphere", "hertz-sphere-3d-fine", "ring-3d-whole"})
 """Cases of several minutes or much memory."""
 
 __all__ = ["CASES", "SLOW", "Check", "all_checks", "compare"]

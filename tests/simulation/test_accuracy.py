@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+from mpi4py import MPI
+
 import numpy as np
 import pytest
 
+from thermowear.contact.operators.heat import BaselineResponse
 from thermowear.contact.solvers.enriched_pressure import EnrichedContact
 from thermowear.errors import ComputationError
 from thermowear.results.points import part_of
 from thermowear.simulation import Observer, run
+from thermowear.simulation.accuracy.enriched_bodies import heated_faces
+from thermowear.simulation.analyses.positioning import prepare
+from thermowear.simulation.analyses.stability import base_state
+from thermowear.simulation.from_case import model_of
+from thermowear.timer import Phases
 from thermowear.verification.cases.contact import hertz_in_space
 from thermowear.verification.check import run_starter, starter
 
@@ -128,6 +136,20 @@ def test_temperatures_in_time(mesh):
     errors = worn_shape("annular-punch", *fine, modes=lambda x: x[:, None] ** 0)
     _, true, estimate = Study("annular-punch", words + mesh, errors).rows()[1]
     assert estimate / 3 < true < 3 * estimate
+
+
+def test_heat_of_a_wrong_pressure():
+    """requirement: details of the friction heat warm both faces as in the exchange of the faces."""
+    model = model_of(starter("annular-punch", *RING, "mesh.degree=2", "mesh.elements=16"))
+    end, _ = base_state(prepare(model, MPI.COMM_WORLD, Phases()), Observer())
+    system, conductance = end.system, end.contact.conditions.conductance
+    x = system.contacts.each[0].points[:, 0]
+    heat = 1e4 * np.sin(6 * np.pi * (x - x.min()) / np.ptp(x))
+    found = heated_faces(system, system.thermal, heat, conductance)
+    none = np.zeros(len(x))
+    coupled = system.thermal.face.exchange(conductance).state(heat, BaselineResponse((none, none)))
+    known = np.array(coupled.rise)
+    assert np.abs(found - known).max() < 0.3 * np.abs(known).max()
 
 
 def test_heat_carried_along():

@@ -182,7 +182,7 @@ class SlipWear:
     repeats : int
         Number of such increments that it represents, one per cycle.
     edge : StickEdge, optional
-        None: coefficients wear as a whole.
+        Without it coefficients wear as a whole.
     """
 
     laws: tuple[Law, ...]

@@ -165,8 +165,8 @@ class _TwoPartJump:
     def error(self) -> float:
         """Largest excess depth relative to the largest depth; 0 without wear.
 
-        But for coefficients across the stick edge: as it passes from one to the next, their depths
-        change at once, however short the jump. What that costs is estimated with the edge.
+        Coefficients across the stick edge do not count: when it passes from one to the next, their
+        depths change at once, however short the jump. `FrettingState.edge_error` estimates that.
         """
         largest = float(self.end.state.worn.max(initial=0.0))
         if largest == 0.0:

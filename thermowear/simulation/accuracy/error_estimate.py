@@ -358,7 +358,7 @@ def _coarser(system: System) -> System:
         lobatto = interface.pressure_degree == "lobatto"
         order = model.discretisation.degree + (0 if lobatto else 1)
         given = face_1, face_2, kinematics, max(order, 2)
-        coarser.append(pair(*given, refine=not lobatto, carrier=fine.carrier))
+        coarser.append(pair(*given, not lobatto, comm=system.comm, carrier=fine.carrier))
     driven = system.holder.rigid_modes
     contacts = replace(system.contacts, each=tuple(coarser))
     contact = sliding_contact(model, kinematics, contacts, driven)

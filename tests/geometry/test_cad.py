@@ -2,6 +2,7 @@
 
 import math
 import random
+from functools import partial
 
 import numpy as np
 import pytest
@@ -167,6 +168,177 @@ def test_sizes(blocks):
     assert len(sizes_of(own, "pad")[1]) < len(sizes_of(mesh, "pad")[1]) / 2
     line = refusal({"paths": blocks}, contact_size="0.05 mm")
     assert line.startswith("mesh.size: the sizes lead to about ")
+
+
+def _round(occ, radius=5.0, across=None):
+    """Cap of a sphere on the origin, or of a barrel with the other radius along x."""
+    box = occ.addBox(-1.5, -1.5, -1.0, 3, 3, 2)
+    if across is None:
+        whole = occ.addSphere(0, 0, radius, radius)
+    else:
+        whole = occ.addTorus(0, 0, radius, radius - across, across)
+        occ.rotate([(3, whole)], 0, 0, radius, 1, 0, 0, math.pi / 2)
+    occ.intersect([(3, whole)], [(3, box)])
+
+
+def _roller(occ, length=2.0):
+    whole = occ.addCylinder(-length / 2, 0, 5, length, 0, 0, 5)
+    occ.intersect([(3, whole)], [(3, occ.addBox(-3, -1.5, -1, 6, 3, 2))])
+
+
+def _filleted(occ):
+    box = occ.addBox(-1.5, -1.5, 0, 3, 3, 1)
+    occ.synchronize()
+    centres = {tag: occ.getCenterOfMass(1, tag) for _, tag in occ.getEntities(1)}
+    low = [tag for tag, (x, _, z) in centres.items() if z < 1e-6 and abs(x) > 1]
+    occ.fillet([box], low, [0.4])
+
+
+def _ring(occ):
+    whole = occ.addTorus(0, 0, 1.0, 1.5, 1.0)
+    occ.intersect([(3, whole)], [(3, occ.addBox(-3, -3, -1, 6, 6, 2))])
+
+
+def _flat(occ):
+    occ.addBox(-2, -2, -2, 4, 4, 2)
+
+
+def _grooved(occ, radius=6.0):
+    cut = occ.addCylinder(-3, 0, radius - 0.1, 6, 0, 0, radius)
+    occ.cut([(3, occ.addBox(-2, -2, -2, 4, 4, 2))], [(3, cut)])
+
+
+E_STAR = 210e9 / (2 * (1 - 0.3**2))
+HERTZ = (3 * 10.0 * 5e-3 / (4 * E_STAR)) ** (1 / 3)
+"""Radius of the contact of a ball of 5 mm under 10 N."""
+
+
+ORIGIN = ((0.0, 0.0, 0.0),)
+HALVES = (0.0, 0.5, 0.0505), (0.0, -0.5, 0.0505)
+
+
+def line(radius):
+    """Half-width of the contact of a roller of 2 mm under 10 N."""
+    return math.sqrt(4 * 5e3 * radius / (math.pi * E_STAR))
+
+
+def case_of(folder, draw, below=_flat, lowest=0.0, chosen=ORIGIN, **tables):
+    """Case of a part that 10 N press on another one, with faces at points of the upper part."""
+    paths = {
+        name: str(write(folder / f"{name}.step", drawing))
+        for name, drawing in (("upper", draw), ("lower", below))
+    }
+    points = [{"point": [f"{x} mm" for x in place], "body": "upper"} for place in chosen]
+    low = {"point": ["0 mm", "0 mm", f"{lowest} mm"], "body": "lower"}
+    surfaces = {"on": points, "under": low, "back": {"plane": "z", "at": "1 mm"}}
+    surfaces["bottom"] = {"plane": "z", "at": "-2 mm"}
+    steel = {"young_modulus": "210 GPa", "poisson_ratio": 0.3}
+    given = {
+        "model": "3d",
+        "geometry": KEYS
+        | {"paths": paths, "contact": ["on", "under"], "surfaces": surfaces}
+        | {"held": "back", "fixed": "bottom"},
+        "mesh": {"degree": 2},
+        "bodies": {"upper": steel, "lower": steel},
+        "load": {"force": "10 N"},
+        "analysis": {"type": "initial"},
+    }
+    return tw.load(given | tables)
+
+
+def zones_of(*args, **tables):
+    return case_of(*args, **tables).meshed_geometry._zones
+
+
+@pytest.mark.parametrize(
+    ("draw", "below", "lowest", "on", "length", "width"),
+    [
+        (_round, _flat, 0.0, ORIGIN, HERTZ, HERTZ),
+        # by the elliptic integrals of Johnson (4.26) to (4.28)
+        (partial(_round, across=2.5), _flat, 0.0, HALVES, 7.663e-5, 4.832e-5),
+        (_roller, _flat, 0.0, ORIGIN, 1e-3, line(5e-3)),
+        (_roller, _grooved, -0.1, ORIGIN, 1e-3, line(30e-3)),
+    ],
+)
+def test_the_zone_that_a_load_closes(draw, below, lowest, on, length, width, tmp_path):
+    """requirement: half-axes of Hertz's contact of the curvatures that remain between both faces,
+    at their closest points; a roller touches all along.
+    """
+    (zone,) = zones_of(tmp_path, draw, below, lowest, on)
+    assert zone.length == pytest.approx(length, rel=0.01)
+    assert zone.width == pytest.approx(width, rel=0.01)
+    centres = np.array(zone.centres)
+    np.testing.assert_allclose(centres, [[0, 0, 0], [0, 0, 1e-3 * lowest]], atol=1e-9)
+    if length > width:
+        assert np.abs(zone.along) == pytest.approx([1, 0, 0], abs=1e-6)
+
+
+def test_faces_that_conform_have_no_zone(tmp_path):
+    """requirement: none for a block with rounded edges, a roller in a bed of its radius, wear that
+    goes on for ever, nor for element sizes that are given; a ring that touches along a circle has
+    none either.
+    """
+    rounded = (0.0, 0.0, 0.0), (1.383, 0.0, 0.117), (-1.383, 0.0, 0.117)
+    assert not zones_of(tmp_path, _filleted, chosen=rounded)
+    assert not zones_of(tmp_path, _roller, partial(_grooved, radius=5.0), -0.1)
+    assert not zones_of(tmp_path, _ring, chosen=((1.5, 0.0, 0.0),))
+    wear = {"upper": {"coefficient": "1e-8 1/MPa", "per": "pressure"}}
+    moving = {"wear": wear, "motion": {"velocity": "1 m/s"}, "analysis": {"type": "steady"}}
+    assert not zones_of(tmp_path, _round, **moving)
+    assert not zones_of(tmp_path, _round, mesh={"degree": 2, "contact_size": "0.2 mm"})
+    assert zones_of(tmp_path, _round, mesh={"degree": 2, "size": "0.4 mm"})
+
+
+def test_supports_share_the_load(tmp_path):
+    """requirement: each of three balls under a plate bears a third of the load."""
+    places = (1.0, 0.0, 0.0), (-0.6, 0.9, 0.0), (-0.6, -0.9, 0.0)
+
+    def draw(occ):
+        balls = [(3, occ.addSphere(x, y, 0.5, 0.5)) for x, y, _ in places]
+        occ.fuse([(3, occ.addBox(-1.5, -1.5, 0.3, 3, 3, 0.7))], balls)
+
+    found = zones_of(tmp_path, draw, chosen=places)
+    np.testing.assert_allclose([z.width for z in found], HERTZ * (0.1 / 3) ** (1 / 3), rtol=0.01)
+    near = np.array([zone.centres[0] for zone in found])
+    for place in places:
+        assert np.linalg.norm(1e3 * near - place, axis=1).min() < 1e-3
+
+
+def test_a_force_of_a_holder_of_an_assembly(tmp_path):
+    """requirement: several bodies have the zones of a pair."""
+    pair = case_of(tmp_path, _round)
+    tables = {
+        "model": "3d",
+        "geometry": {
+            "type": "cad",
+            "paths": pair.geometry.paths,
+            "surfaces": {
+                "upper": {"on": {"point": ["0 mm"] * 3}, "back": {"plane": "z", "at": "1 mm"}},
+                "lower": {
+                    "under": {"point": ["0 mm"] * 3},
+                    "bottom": {"plane": "z", "at": "-2 mm"},
+                },
+            },
+        },
+        "mesh": {"degree": 2},
+        "bodies": {
+            "upper": pair.bodies["upper"].model_dump(exclude_none=True),
+            "lower": {"like": "upper", "fixed": "bottom"},
+        },
+        "contacts": {"ball": {"between": ["on", "under"]}},
+        "holders": {"press": {"surface": "back", "force": "10 N"}},
+        "analysis": {"type": "initial"},
+    }
+    assert tw.load(tables).meshed_geometry._zones == pair.meshed_geometry._zones
+
+
+@pytest.mark.slow
+def test_the_default_mesh_resolves_the_contact_of_a_ball(tmp_path):
+    """requirement: the largest pressure is Hertz's within 3 %, and the mesh is affordable."""
+    case = case_of(tmp_path, _round)
+    summary = tw.run(case).summary
+    assert summary["max_pressure_Pa"] == pytest.approx(15.0 / (math.pi * HERTZ**2), rel=0.03)
+    assert summary["dofs_displacement"] < 200_000
 
 
 def test_labels_of_faces(starter):

@@ -13,11 +13,12 @@ from ..studies.study import StudyTable
 from ..tables.analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from ..tables.conditions import HeatTable
 from ..tables.contact import InterfaceTable
-from ..tables.materials import Properties, cell_sets, located_material
+from ..tables.materials import Properties, cell_sets, contact_modulus, located_material
 from ..tables.mesh import MeshTable, check_size
 from ..tables.probes import ProbeTable
 from ..tables.tabulated import TimeHistory
 from ..tables.wear import WearTable
+from ..values.pressing import Pressing, resolving
 from ..values.section import Section
 from .geometry import AnyAssembly
 from .tables import (
@@ -161,6 +162,27 @@ class AssemblyCase(Section):
         return set(map(self.geometry.body_of, faces))
 
     @property
+    def meshed_geometry(self) -> AnyAssembly:
+        """Geometry with what its mesh follows from."""
+        return resolving(self, self._pressing)
+
+    def _pressing(self) -> list[Pressing | None]:
+        """Loads of the contacts that slide: the largest one of all holders presses each."""
+        held, histories = self.holders.values(), [h.history for h in self.holders.values()]
+        forces = [h.force or 0.0 for h in held] + [max(h.force or (0.0,)) for h in histories if h]
+        approaches = [h.approach or 0.0 for h in held]
+        approaches += [max(h.approach or (0.0,)) for h in histories if h]
+        force, approach = (max(loads, default=0.0) or None for loads in (forces, approaches))
+
+        def on(table: AssemblyContactTable) -> Pressing | None:
+            bodies = map(self.geometry.body_of, table.between or ())
+            parts = (self.geometry.parts_of(body)[:2][-1] for body in bodies)
+            modulus = contact_modulus(self.located_material(part)[1] for part in parts)
+            return Pressing(force, None if force else approach, modulus)
+
+        return [on(table) if force or approach else None for table in self.sliding.values()]
+
+    @property
     def histories(self) -> dict[str, TimeHistory]:
         """Time histories by the path of their key."""
         found: dict[str, TimeHistory | None]
@@ -205,7 +227,7 @@ class AssemblyCase(Section):
         CaseError
             If it has too many nodes, or nodes beyond the axis.
         """
-        mesh = self.geometry.build(self.mesh)
+        mesh = self.meshed_geometry.build(self.mesh)
         check_size(mesh, self.mesh.degree)
         x = mesh.points[:, 0]
         if self.model == "axisymmetric" and x.min() < -1e-9 * x.max():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Annotated, Any
 
 from pydantic import Field
@@ -39,6 +39,16 @@ class Properties(Section):
     yield_strength: units.Pressure | None = None
     conductivity_factor: TemperatureTable | None = None
     expansion_factor: ExpansionTable | None = None
+
+
+def contact_modulus(materials: Iterable[Properties]) -> float:
+    """Contact modulus ``1/E* = Σ (1 - ν²)/E`` of checked materials [Pa]."""
+    softness = 0.0
+    for body in materials:
+        assert body.young_modulus is not None
+        assert body.poisson_ratio is not None
+        softness += (1 - body.poisson_ratio**2) / body.young_modulus
+    return 1 / softness
 
 
 class MaterialTable(Properties):

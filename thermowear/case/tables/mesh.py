@@ -56,7 +56,8 @@ class MeshTable(Section):
         Largest element size of bodies from CAD, by default a small part of the size of each body
         [m].
     contact_size : float or None
-        Element size on contact faces of bodies from CAD, by default half of the largest one [m].
+        Element size on contact faces of bodies from CAD, by default half of the largest one, and
+        finer where curved faces touch in a small zone [m].
     skin : float or None
         Height of the first row of elements at the contact faces, where they are thicker otherwise
         [m].

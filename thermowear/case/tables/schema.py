@@ -13,13 +13,20 @@ from ...errors import CaseError
 from ...laws.time_course import LoadHistories
 from ..studies.calibration import CalibrationTable
 from ..studies.study import StudyTable
-from ..values.pressing import Pressing
+from ..values.pressing import Pressing, resolving
 from ..values.section import Section
 from .analyses import Fretting, Initial, Reciprocating, Stability, Steady, Transient
 from .conditions import HeatTable, HolderTable, LoadTable, MotionTable
 from .contact import ContactTable, InterfaceTable
 from .geometry_choice import AnyGeometry
-from .materials import BodyTable, Properties, cell_sets, located_material, part_named
+from .materials import (
+    BodyTable,
+    Properties,
+    cell_sets,
+    contact_modulus,
+    located_material,
+    part_named,
+)
 from .mesh import MeshTable, check_size
 from .probes import ProbeTable
 from .tabulated import TimeHistory
@@ -110,13 +117,13 @@ class Case(Section):
 
     def pressing(self) -> Pressing:
         """Normal load and contact modulus, for estimates of the contact zone."""
-        softness = 0.0
-        for name in self.geometry.bodies:
-            body = self.material(name)
-            assert body.young_modulus is not None  # the case has been checked
-            assert body.poisson_ratio is not None
-            softness += (1 - body.poisson_ratio**2) / body.young_modulus
-        return Pressing(self.force(), self.approach(), 1 / softness)
+        modulus = contact_modulus(self.material(name) for name in self.geometry.bodies)
+        return Pressing(self.force(), self.approach(), modulus)
+
+    @property
+    def meshed_geometry(self) -> AnyGeometry:
+        """Geometry with what its mesh follows from."""
+        return resolving(self, lambda: (self.pressing(),))
 
     @property
     def cycles(self) -> float | None:
@@ -186,7 +193,7 @@ class Case(Section):
         """
         if zone is None:
             zone = self.geometry.expected_zone(self.pressing())
-        mesh = self.geometry.build(self.mesh, zone)
+        mesh = self.meshed_geometry.build(self.mesh, zone)
         check_size(mesh, self.mesh.degree)
         x = mesh.points[:, 0]
         if self.model == "axisymmetric" and x.min() < -1e-9 * x.max():

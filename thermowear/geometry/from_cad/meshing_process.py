@@ -15,12 +15,14 @@ import sys
 from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ...errors import CaseError
 from ..reading.contents import CellBlock, MeshContents
 from ..reading.file_contents import check_file
+from .curved import CurvedPlace
 from .request import CadRequest
 
 ENDINGS = (".step", ".stp", ".brep")
@@ -62,6 +64,17 @@ def touching_bodies(request: CadRequest) -> list[tuple[str, str]]:
         One line, reported at the key at fault.
     """
     return _touching(_with_digests(request))
+
+
+def curved_places(request: CadRequest) -> tuple[CurvedPlace, ...]:
+    """Places where the faces of contacts curve against each other.
+
+    Raises
+    ------
+    CaseError
+        One line, reported at the key at fault.
+    """
+    return _curved(_with_digests(request))
 
 
 def _with_digests(request: CadRequest) -> CadRequest:
@@ -111,9 +124,22 @@ def _meshed(request: CadRequest) -> MeshContents:
 
 
 @lru_cache(maxsize=4)
+def _curved(request: CadRequest) -> tuple[CurvedPlace, ...]:
+    places = json.loads(str(_run("curved", request)["contents"]))
+    return tuple(
+        CurvedPlace(**{key: _as_tuples(value) for key, value in place.items()}) for place in places
+    )
+
+
+@lru_cache(maxsize=4)
 def _touching(request: CadRequest) -> list[tuple[str, str]]:
     pairs = json.loads(str(_run("touching", request)["contents"]))
     return [(one, other) for one, other in pairs]
+
+
+def _as_tuples(value: Any) -> Any:
+    """Value of JSON with tuples for lists, which can be a key."""
+    return tuple(map(_as_tuples, value)) if isinstance(value, list) else value
 
 
 def _run(task: str, request: CadRequest) -> dict[str, np.ndarray]:

@@ -13,10 +13,12 @@ import json
 import os
 import pickle
 import sys
+from dataclasses import asdict
 
 import numpy as np
 
 from .choice import chosen_faces
+from .curved import curved_places
 from .meshing import make_mesh, mesh_arrays
 from .request import CadError, CadRequest
 from .sizes import refinement, set_sizes
@@ -28,15 +30,12 @@ Surfaces = dict[str, dict[str, list[CadFace]]]
 
 def meshed(gmsh, request: CadRequest) -> dict[str, np.ndarray]:
     """Arrays of the mesh, see `mesh_arrays`, and the names in ``contents``."""
-    bodies = read_bodies(gmsh, request.bodies)
-    surfaces: Surfaces = {
-        surface.name: chosen_faces(gmsh, surface, bodies) for surface in request.surfaces
-    }
-    for touch in request.touching:
-        found = touching_faces(gmsh, touch, bodies, request.tolerance)
-        for name, body, faces in zip(touch.names, touch.bodies, found, strict=True):
-            surfaces[name] = {body: faces}
-    contacts = [_refinement(surfaces, bodies, names) for names in request.faces]
+    bodies, surfaces = _read(gmsh, request)
+    contacts = []
+    for names in request.faces:
+        sides = _sides(surfaces, names)
+        zones = [zone for zone in request.zones if zone.faces == names]
+        contacts.append(refinement(sides, [bodies[side[0].body] for side in sides], zones))
     set_sizes(gmsh, list(bodies.values()), contacts)
     make_mesh(gmsh, list(bodies.values()))
     contents = {
@@ -58,11 +57,30 @@ def touching(gmsh, request: CadRequest) -> dict[str, np.ndarray]:
     return {"contents": np.array(json.dumps(pairs))}
 
 
-def _refinement(surfaces: Surfaces, bodies: dict[str, CadBody], names: tuple[str, str]):
-    """Refinement towards two contact faces."""
-    sides = [next(iter(surfaces[name].items())) for name in names]
-    (one, a), (other, b) = sides
-    return refinement((a, b), (bodies[one], bodies[other]))
+def curved(gmsh, request: CadRequest) -> dict[str, np.ndarray]:
+    """Places where faces in contact curve against each other in ``contents``."""
+    bodies, surfaces = _read(gmsh, request)
+    places = curved_places(gmsh, [_sides(surfaces, names) for names in request.faces], bodies)
+    return {"contents": np.array(json.dumps([asdict(place) for place in places]))}
+
+
+def _read(gmsh, request: CadRequest) -> tuple[dict[str, CadBody], Surfaces]:
+    """Bodies, and the faces of all surfaces."""
+    bodies = read_bodies(gmsh, request.bodies)
+    surfaces: Surfaces = {
+        surface.name: chosen_faces(gmsh, surface, bodies) for surface in request.surfaces
+    }
+    for touch in request.touching:
+        found = touching_faces(gmsh, touch, bodies, request.tolerance)
+        for name, body, faces in zip(touch.names, touch.bodies, found, strict=True):
+            surfaces[name] = {body: faces}
+    return bodies, surfaces
+
+
+def _sides(surfaces: Surfaces, names: tuple[str, str]) -> tuple[list[CadFace], list[CadFace]]:
+    """Faces of both bodies in a contact."""
+    first, second = (next(iter(surfaces[name].values())) for name in names)
+    return first, second
 
 
 def _set_limits(memory: int, seconds: int) -> None:
@@ -80,7 +98,7 @@ def _set_limits(memory: int, seconds: int) -> None:
         resource.setrlimit(limit, (bound, hard))
 
 
-_TASKS = {"mesh": meshed, "touching": touching}
+_TASKS = {"mesh": meshed, "touching": touching, "curved": curved}
 
 
 def main(task: str, memory: str, seconds: str) -> int:

@@ -104,6 +104,29 @@ class TouchRequest:
 
 
 @dataclass(frozen=True)
+class Zone:
+    """Small zone of a contact that a load closes, for which both meshes are refined.
+
+    Attributes
+    ----------
+    faces : tuple of str
+        Surfaces that slide on each other.
+    centres : tuple of Point
+        Its centre on each of them [m].
+    along : Point
+        Unit vector of its length.
+    length, width : float
+        Halves of its length and of its width [m].
+    """
+
+    faces: tuple[str, str]
+    centres: tuple[Point, Point]
+    along: Point
+    length: float
+    width: float
+
+
+@dataclass(frozen=True)
 class CadRequest:
     """Everything that a mesh follows from, besides the contents of the files.
 
@@ -116,6 +139,7 @@ class CadRequest:
         Surfaces, two each, that slide on each other: the mesh is refined there.
     tolerance : float or None
         Largest distance of faces that touch [m]; None: a small part of the smaller body.
+    zones : tuple of Zone
     digests : tuple of str
         SHA-256 of the files of the bodies.
     """
@@ -125,4 +149,5 @@ class CadRequest:
     touching: tuple[TouchRequest, ...] = ()
     faces: tuple[tuple[str, str], ...] = ()
     tolerance: float | None = None
+    zones: tuple[Zone, ...] = ()
     digests: tuple[str, ...] = ()

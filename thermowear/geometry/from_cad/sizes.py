@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .request import CadError
-from .solids import CadBody, CadFace
+from .request import CadError, Zone
+from .solids import UNIT, CadBody, CadFace
 
 GROWTH = 0.35
 """Increase of the element size per distance from the contact."""
@@ -23,6 +23,10 @@ _LEAST = 0.3
 """Smallest element size relative to that at the edges of the contact."""
 _PER_WIDTH = 1.5
 """Largest element size at a face relative to its width."""
+_PER_HALF_WIDTH = 5.0
+"""Number of elements across half of a zone that is to be resolved."""
+_MOST_IN_ZONE = 30_000
+"""Largest number of tetrahedra of a body because of such a zone."""
 _SPACING = 0.7
 """Distance of the points from which distances are measured, relative to the size there."""
 
@@ -35,19 +39,24 @@ class Refinement:
     ----------
     faces : tuple of CadFace
         Those of the smaller side.
-    bodies : tuple of CadBody
+    bodies : sequence of CadBody
+    zones : sequence of Zone
+        Small zones that are to be resolved.
     """
 
     faces: tuple[CadFace, ...]
-    bodies: tuple[CadBody, CadBody]
+    bodies: Sequence[CadBody]
+    zones: Sequence[Zone] = ()
 
 
 def refinement(
-    faces: tuple[Sequence[CadFace], Sequence[CadFace]], bodies: tuple[CadBody, CadBody]
+    faces: tuple[Sequence[CadFace], Sequence[CadFace]],
+    bodies: Sequence[CadBody],
+    zones: Sequence[Zone] = (),
 ) -> Refinement:
     """Refinement of a contact, at the side with the lesser area."""
     areas = [sum(face.area for face in of_body) for of_body in faces]
-    return Refinement(tuple(faces[int(np.argmin(areas))]), bodies)
+    return Refinement(tuple(faces[int(np.argmin(areas))]), bodies, zones)
 
 
 def set_sizes(gmsh, bodies: Sequence[CadBody], contacts: Sequence[Refinement]) -> None:
@@ -63,9 +72,16 @@ def set_sizes(gmsh, bodies: Sequence[CadBody], contacts: Sequence[Refinement]) -
     _check_number(gmsh, bodies, contacts, curves)
     for contact, edges in zip(contacts, curves, strict=True):
         faces = [face.tag for face in contact.faces]
-        for body in contact.bodies:
+        for side, body in enumerate(contact.bodies):
             tags = [solid.tag for solid in body.solids]
             size, inside, edge = body.element_sizes
+            for zone in contact.zones:
+                near = _zone_size(zone) / UNIT
+                if body.request.contact_size is None and near < edge:
+                    field = fields.add("MathEval")
+                    fields.setString(field, "F", _about(zone, side, near))
+                    limits.append(_within(fields, field, tags, _boundary(gmsh, tags)))
+                    least.append(near)
             own = [
                 _towards(fields, "SurfacesList", faces, inside, size, _extent(contact.faces)),
                 _towards(fields, "CurvesList", edges, edge, size, _longest(gmsh, edges)),
@@ -138,6 +154,38 @@ def _towards(fields, key: str, entities: list[int], near: float, far: float, ext
     for name, value in settings.items():
         fields.setNumber(result, name, value)
     return result
+
+
+def _zone_size(zone: Zone) -> float:
+    """Element size in a zone: several across it, unless that were too many [m]."""
+    size = zone.width / _PER_HALF_WIDTH
+    while _tetrahedra(zone, size) > _MOST_IN_ZONE:
+        size *= 1.1
+    return size
+
+
+def _tetrahedra(zone: Zone, size: float) -> float:
+    """Estimate of their number in one body, in a zone and where they grow around it."""
+    straight, radius = max(zone.length - zone.width, 0.0), zone.width
+    inside = math.pi * radius**2 * straight + 2 / 3 * math.pi * radius**3
+    away = np.geomspace(1.0, 1e3, 200)
+    area = 2 * math.pi * (radius * away) ** 2 + 2 * math.pi * radius * away * straight
+    around = area / (size + GROWTH * radius * (away - 1.0)) ** 3
+    return _PER_CUBE * float(inside / size**3 + np.trapezoid(around, radius * away))
+
+
+def _about(zone: Zone, side: int, near: float) -> str:
+    """Size as gmsh's ``MathEval``: it grows with the distance from a zone [mm]."""
+    x, y, z = (
+        f"({c}-({value / UNIT!r}))" for c, value in zip("xyz", zone.centres[side], strict=True)
+    )
+    u, v, w = (f"({value!r})" for value in zone.along)
+    along = f"({x}*{u}+{y}*{v}+{z}*{w})"
+    straight = max(zone.length - zone.width, 0.0) / UNIT
+    past = f"(0.5*(Fabs({along})-{straight!r}+Fabs(Fabs({along})-{straight!r})))"
+    across = f"({x}*{x}+{y}*{y}+{z}*{z}-{along}*{along})"
+    beyond = f"(Sqrt(Fabs({across}+{past}*{past}))-{zone.width / UNIT!r})"
+    return f"{near!r}+{GROWTH / 2}*({beyond}+Fabs({beyond}))"
 
 
 def _within(fields, field: int, solids: list[int], faces: list[int]) -> int:

@@ -41,7 +41,7 @@ def assembly_of(case: AssemblyCase) -> Model:
             _interface(case, name, table) for name, table in case.contacts.items() if not table.tie
         ),
         holders=(*holders, *hanging_holders(case.model, bodies, symmetry, groups, held)),
-        meshes=AssemblyMeshes(case.model, geometry, case.mesh, case),
+        meshes=AssemblyMeshes(case.model, case.meshed_geometry, case.mesh, case),
         discretisation=Discretisation(case.mesh.degree, solver=case.mesh.solver),
         heat=None if case.heat is None else Heat(**attributes(Heat, case.heat)),
         thickness=geometry.thickness_factor if case.model.startswith("plane") else None,

@@ -48,7 +48,7 @@ def pair_of(case: Case) -> Model:
         bodies=_bodies(case),
         interfaces=(_interface(case),),
         holders=(_holder(case),),
-        meshes=CaseMeshes(case.model, geometry, case.mesh, case),
+        meshes=CaseMeshes(case.model, case.meshed_geometry, case.mesh, case),
         discretisation=Discretisation(case.mesh.degree, case.contact.positioning, case.mesh.solver),
         heat=None if case.heat is None else Heat(**attributes(Heat, case.heat)),
         thickness=geometry.thickness_factor,

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
-from typing import Literal
+from typing import Literal, Self
 
 from pydantic import Field, PrivateAttr, model_validator
 
+from ....case.tables.mesh import MeshTable
+from ....case.values.pressing import Pressing
 from ....case.values.section import KeyFault
 from ....case.values.units import Length
 from ...from_cad.meshing_process import meshed_contents, touching_bodies
-from ...from_cad.request import CadRequest, SurfaceRequest, TouchRequest
+from ...from_cad.request import CadRequest, SurfaceRequest, TouchRequest, Zone
 from ...reading.bodies import bodies_in
 from ...reading.named import Named
 from ..assembly_file import AssemblyFile
-from .cad_keys import CadSolids, CadSurfaces, body_requests, check_files
+from .cad_keys import CadSolids, CadSurfaces, body_requests, check_files, with_zones
 
 
 class CadAssembly(AssemblyFile):
@@ -57,6 +59,7 @@ class CadAssembly(AssemblyFile):
         alias="surfaces", default={}
     )
     _sliding: tuple[tuple[str, str], ...] = PrivateAttr(default=())
+    _zones: tuple[Zone, ...] = PrivateAttr(default=())
 
     @model_validator(mode="after")
     def _from_cad(self):
@@ -119,12 +122,21 @@ class CadAssembly(AssemblyFile):
         result._sliding = faces
         return result
 
+    def pressed(self, pressing: Sequence[Pressing | None]) -> Self:
+        """Geometry with the zones that loads of the contacts close."""
+        return with_zones(self, self._request(None), pressing)
+
     def build(self, mesh):
         named = [
             Named(name, (name,), f"geometry.surfaces.{body}", self.bodies.index(body))
             for body, names in self._surfaces_of().items()
             for name in names
         ]
+        contents = meshed_contents(self._request(mesh))
+        cells = {body: (body,) for body in self.bodies}
+        return bodies_in(contents, cells, named, self._with_material)
+
+    def _request(self, mesh: MeshTable | None) -> CadRequest:
         surfaces = tuple(
             SurfaceRequest(
                 name, f"geometry.surfaces.{body}.{name}", tuple(t.choice() for t in tables), body
@@ -132,14 +144,11 @@ class CadAssembly(AssemblyFile):
             for body, names in self.surface_names.items()
             for name, tables in names.items()
         )
-        contents = meshed_contents(
-            CadRequest(
-                bodies=body_requests(self, mesh),
-                surfaces=surfaces,
-                touching=tuple(self.touches.values()),
-                faces=self._sliding,
-                tolerance=self.contact_tolerance,
-            )
+        return CadRequest(
+            bodies=body_requests(self, mesh),
+            surfaces=surfaces,
+            touching=tuple(self.touches.values()),
+            faces=self._sliding,
+            tolerance=self.contact_tolerance,
+            zones=self._zones,
         )
-        cells = {body: (body,) for body in self.bodies}
-        return bodies_in(contents, cells, named, self._with_material)

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from collections.abc import Sequence
+from typing import Literal, Self
 
-from pydantic import Field, ValidationInfo, model_validator
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
 from ....case.tables.geometry import keyed
+from ....case.tables.mesh import MeshTable
+from ....case.values.pressing import Pressing
 from ....case.values.section import KeyFault
 from ....case.values.units import Length
 from ...from_cad.meshing_process import meshed_contents
-from ...from_cad.request import CadRequest, FaceChoice, SurfaceRequest, TouchRequest
+from ...from_cad.request import CadRequest, FaceChoice, SurfaceRequest, TouchRequest, Zone
 from ...reading.bodies import bodies_in
 from ..mesh_file import MeshFile
-from .cad_keys import CadFaces, CadSolids, body_requests, check_files
+from .cad_keys import CadFaces, CadSolids, body_requests, check_files, with_zones
 
 
 class CadFile(MeshFile):
@@ -60,6 +63,8 @@ class CadFile(MeshFile):
         alias="surfaces", default={}
     )
 
+    _zones: tuple[Zone, ...] = PrivateAttr(default=())
+
     @model_validator(mode="after")
     def _from_cad(self, info: ValidationInfo):
         check_files(self)
@@ -87,28 +92,33 @@ class CadFile(MeshFile):
     def _in_file(self, name: str) -> str:
         return name
 
+    def pressed(self, pressing: Sequence[Pressing | None]) -> Self:
+        """Geometry with the zone that a load of the contact closes."""
+        return with_zones(self, self._request(None), pressing)
+
     def build(self, mesh, zone):
-        found = self._purposes()
-        auto = self.contact_names == "auto"
-        contents = meshed_contents(
-            CadRequest(
-                bodies=body_requests(self, mesh),
-                surfaces=tuple(
-                    SurfaceRequest(
-                        name, of.key, self._choices(name), self._body(of.body), self._reason(name)
-                    )
-                    for name, of in found.items()
-                    if not (auto and name in self.contact)
-                ),
-                touching=(
-                    (TouchRequest(self.bodies, self.contact, "geometry.contact"),) if auto else ()
-                ),
-                faces=(self.contact,),
-                tolerance=self.contact_tolerance,
-            )
-        )
+        contents = meshed_contents(self._request(mesh))
         cells = {body: (body,) for body in self.bodies}
-        return bodies_in(contents, cells, list(found.values()), self._with_material)
+        return bodies_in(contents, cells, list(self._purposes().values()), self._with_material)
+
+    def _request(self, mesh: MeshTable | None) -> CadRequest:
+        auto = self.contact_names == "auto"
+        return CadRequest(
+            bodies=body_requests(self, mesh),
+            surfaces=tuple(
+                SurfaceRequest(
+                    name, of.key, self._choices(name), self._body(of.body), self._reason(name)
+                )
+                for name, of in self._purposes().items()
+                if not (auto and name in self.contact)
+            ),
+            touching=(
+                (TouchRequest(self.bodies, self.contact, "geometry.contact"),) if auto else ()
+            ),
+            faces=(self.contact,),
+            tolerance=self.contact_tolerance,
+            zones=self._zones,
+        )
 
     def _choices(self, name: str) -> tuple[FaceChoice, ...]:
         """Faces of a surface; by its name as a label unless it is listed."""

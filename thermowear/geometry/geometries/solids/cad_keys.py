@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -9,9 +10,12 @@ import numpy as np
 from pydantic import BeforeValidator, model_serializer, model_validator
 
 from ....case.values.json_schema import A_NAME, LIST_OF_NAMES, AnyOf, OrAlso
+from ....case.values.pressing import Pressing
 from ....case.values.section import KeyFault, Number, Section
 from ....case.values.units import Coordinate
-from ...from_cad.request import BodyRequest, FaceChoice
+from ...from_cad.curved import expected_zones
+from ...from_cad.meshing_process import curved_places
+from ...from_cad.request import BodyRequest, CadRequest, FaceChoice
 
 Place = tuple[Coordinate, Coordinate, Coordinate]
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -176,3 +180,10 @@ def body_requests(geometry: Any, mesh: Any) -> tuple[BodyRequest, ...]:
             )
         )
     return tuple(result)
+
+
+def with_zones(geometry: Any, request: CadRequest, pressing: Sequence[Pressing | None]) -> Any:
+    """Geometry with the small zones that loads of its contacts close, see `expected_zones`."""
+    result = geometry.model_copy()
+    result._zones = expected_zones(request, curved_places(request), pressing)
+    return result

@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import thermowear as tw
 from thermowear.model import Body, Discretisation, Holder, Interface, Material, Model
 from thermowear.model.analyses import StaticAnalysis
 from thermowear.simulation.analyses.run import run
 from thermowear.simulation.runtime.observer import Observer
+from thermowear.verification.check import starter
 
 from .extruded import Blocks
 
@@ -121,3 +123,21 @@ def test_what_is_not_singular(upper, contact):
     summary = initial(model(Blocks((upper, UP), (WIDE, -UP[::-1])), **contact), observer).summary
     assert "singular_edge_load_fraction" not in summary["contacts"]["joint"]
     assert not [note for note in observer.notes if "singular" in note]
+
+
+@pytest.mark.parametrize(
+    ("name", "rounded"),
+    [("punch-on-block", ('geometry.edge_radius="1 mm"',)), ("rectangular-punch", None)],
+)
+def test_a_contact_face_that_ends_with_the_punch(name, rounded):
+    """requirement: an edge is as singular where the smooth surface under it goes on beyond the
+    contact face; the pressure off it is the same on other meshes. Rounded edges are not.
+    """
+    settings = "analysis.type=initial", "mesh.degree=2"
+    coarse, fine = (tw.run(starter(name, *settings, f"mesh.elements={n}")).summary for n in (8, 12))
+    assert coarse["singular_edge_load_fraction"] > fine["singular_edge_load_fraction"] > 0.0
+    assert fine["max_pressure_off_singular_edges_Pa"] < 0.7 * fine["max_pressure_Pa"]
+    if rounded is not None:
+        assert (
+            "singular_edge_load_fraction" not in tw.run(starter(name, *settings, *rounded)).summary
+        )

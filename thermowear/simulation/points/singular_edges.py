@@ -1,6 +1,7 @@
 """Contact points at edges where the pressure of unworn bodies is singular.
 
-A contact that ends at a sharp edge of one body, while the smooth face of the other one goes on, has
+A contact that ends at a sharp edge of one body, while the smooth surface of the other one goes on
+(within the contact face, or beyond its end there), has
 a pressure that grows towards the edge like a negative power of the distance (Dundurs and Lee, J.
 Elasticity 2 (1972) 109): the finer the elements, the larger the largest pressure. Forces, and the
 pressure away from the edge, converge. Wear and soft layers between the faces make it finite.
@@ -35,13 +36,22 @@ def singular_points(bodies: Bodies, contacts: Contacts, softness: np.ndarray) ->
 
 
 def _at_edges(bodies: Bodies, pairing: Pairing) -> np.ndarray:
-    """Points of an interface at the sharp edges of either face within the other one, (n,)."""
+    """Points of an interface at sharp edges of either face where the other body goes on, (n,)."""
     carrying = pairing.carrying
     numbers = carrying.face.corner_numbers
     at_edge = []
     for side, other in (pairing.sides, pairing.sides[::-1]):
         face = side.face
-        sharp = rim(face, bodies.each[face.body], [face.name])[0] & ends_within(face, other.face)
+        sharp, goes_on = (
+            rim(one, bodies.each[one.body], [one.name])[k]
+            for k, one in enumerate((face, other.face))
+        )
+        within = ends_within(face, other.face)
+        ends = sharp & ~within  # where the other face may end, too
+        if ends.any():
+            beyond = opposite(face, *beside_edges(face, ends), other.face).facet
+            within[ends] = goes_on[beyond].reshape(np.count_nonzero(ends), -1).any(axis=1)
+        sharp &= within
         if face is carrying.face:
             at_edge.append(numbers[:, edges_of(face.kind)][sharp].ravel())
         elif sharp.any():  # cuts facets of the other face

@@ -125,6 +125,20 @@ def test_shape_of_a_running_in(end):
     assert estimate / 3 < true < 3 * estimate
 
 
+def test_the_largest_pressure_of_a_growing_contact():
+    """requirement: elements cut by the end of the wear are not held against it; the change on finer
+    meshes is within the estimate, which stays small.
+    """
+    words = "analysis.end_time=10 s", "analysis.output_times=[]"
+    *found, fine = (
+        run_starter("cylinder-on-block-growing", *words, f"mesh.elements={n}").summary
+        for n in (20, 40, 80, 160)
+    )
+    for each in found:
+        estimate = each["max_pressure_error_estimate_relative"]
+        assert abs(each["max_pressure_Pa"] / fine["max_pressure_Pa"] - 1) < estimate < 0.03
+
+
 @pytest.mark.parametrize("mesh", [HOT, ("mesh.degree=3", "mesh.elements=3")], ids=str)
 def test_temperatures_in_time(mesh):
     """requirement: so are temperatures while heat is stored, also those by a wrong pressure."""

@@ -202,6 +202,17 @@ def test_what_is_not_estimated_is_said():
     assert missing["temperature"] == "isothermal"
 
 
+def test_the_largest_pressure_of_a_cycle_has_no_estimate():
+    """requirement: that of a stroke has none, unlike the one at mid-stroke, and a note says so."""
+    notes = Notes()
+    words = "analysis.cycles=10", "analysis.output_times=[]"
+    result = run(starter("punch-on-strip-reciprocating", *words), observer=notes)
+    (note,) = (text for text in notes.texts if text.startswith("no estimate"))
+    assert "of the largest pressure of the cycle, because all estimates are those of mid" in note
+    assert "max_pressure_of_cycle" in result.summary["error_estimate_missing"]
+    assert estimates(result)["max_pressure"] is not None
+
+
 def test_no_estimate_never_ends_a_run(monkeypatch):
     """requirement: results are kept where the richer contact has no solution."""
 

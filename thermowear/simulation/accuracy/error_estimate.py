@@ -57,7 +57,10 @@ _FLAT = 1e-9
 
 _FLAT_COSINE, _EDGE_COSINE = np.cos(np.radians([0.1, 20.0]))
 """Cosine between the normals of a facet and of a face, of flat facets and at an edge."""
-_NAMES = {"max_pressure": "largest pressure"}
+_NAMES = {
+    "max_pressure": "largest pressure",
+    "max_pressure_of_cycle": "the largest pressure of the cycle",
+}
 _ISOTHERMAL = "isothermal"
 _AMBIENT = "no temperature differs from the ambient one"
 _OPEN = "nothing presses"
@@ -106,7 +109,9 @@ class ErrorEstimates:
             notes.append(f"estimated discretisation error above 5 %: {large}; {advice}")
         reasons = {q: why for q, why in self.missing.items() if why not in _NOTHING_TO_ESTIMATE}
         for reason in dict.fromkeys(reasons.values()):
-            quantities = " and ".join(q for q, why in reasons.items() if why == reason)
+            quantities = " and ".join(
+                _NAMES.get(q, q) for q, why in reasons.items() if why == reason
+            )
             notes.append(
                 f"no estimate of the discretisation error of {quantities}, because {reason}; "
                 "compare by `run --accuracy`"
@@ -121,6 +126,8 @@ def estimate_errors(analysis: Analysis, end: Snapshot, time: float) -> ErrorEsti
     errors: dict[str, float | None] = dict.fromkeys(
         ("pressure", "max_pressure", "shape", "temperature")
     )
+    if analysis.type == "reciprocating":
+        missing["max_pressure_of_cycle"] = "all estimates are those of mid-stroke"
     near = near_contact(system)
     heated, why = _temperature_change(end, time, near)
     if heated is not None:

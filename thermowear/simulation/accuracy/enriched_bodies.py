@@ -83,7 +83,10 @@ class EnrichedBodies:
         self._problem = EnrichedProblem(
             elastic.spaces,
             surplus,
-            [(partial(body.virtual_work, degree=self._degree),) for body in elastic.each],
+            [
+                (partial(body.virtual_work, degree=_gradients(self._degree, near)),)
+                for body in elastic.each
+            ],
             _solver(system, elastic.solve),
             (elastic.fixed, np.concatenate(held)),
             near=near,
@@ -127,6 +130,14 @@ class EnrichedBodies:
         for works in surface_loads(system.model, system.elastic):
             loads = loads + problem.surplus.loads(works)
         return loads
+
+
+def _gradients(degree: int, near: list[np.ndarray] | None) -> int:
+    """Degree for the quadrature of products of gradients, which have one degree less.
+
+    Not in a section, whose radii are in it, too.
+    """
+    return degree if near is None else degree - 1
 
 
 def _solver(system: System, solve: Callable) -> Callable[[np.ndarray], np.ndarray]:
@@ -267,7 +278,7 @@ def _conducting(
     terms, only_corrections = [], []
     for index, body in enumerate(bodies.each):
         own = [
-            conducting(body, kinematics, conductivities, degree),
+            conducting(body, kinematics, conductivities, _gradients(degree, near)),
             *transferring(body, kinematics, given_h),
         ]
         corrected = transferring(body, kinematics, shifts)

@@ -168,6 +168,8 @@ def test_next_step_of_an_error_of_third_order():
         assert 4.0 * following**3 == pytest.approx(0.9**3)
     assert next_step(1.0, 1e9, 1.0) == 0.2
     assert next_step(1.0, 1e-9, 1.0) == next_step(1.0, 0.0, 1.0) == 5.0
+    assert next_step(1.0, 0.0, 1.0, wanted=8.0) == 8.0  # has been cut short
+    assert next_step(1.0, 1.0, 1.0, wanted=8.0) == 0.9
 
 
 def test_next_step_of_a_decaying_transient():

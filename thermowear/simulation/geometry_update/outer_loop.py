@@ -46,9 +46,9 @@ from .moving_faces import (
 from .wider_zone import UpdateCounts, meshed_wider, wider_zone
 
 _CHANGE = 5e-3
-"""Target change of pressure and temperatures by an automatic update."""
+"""Target change of pressure and temperatures by an automatic update, or the larger tolerance."""
 _OVER = 0.1
-"""Overshoot of the allowed fraction that a step may cause, relative to it."""
+"""Overshoot of the allowed fraction that a step may cause, relative to it; half is aimed at."""
 _ROOM = 5.0
 """Upper limit of the allowed fraction, as a multiple of the automatic one."""
 _ALMOST = 0.05
@@ -304,9 +304,8 @@ class OuterLoop:
         self.largest_kept = max(self.largest_kept, fraction)
         self._sizes.largest = np.inf
         if grown > 0.0:
-            left = self.allowed - fraction
-            left = self.allowed if left <= 0.0 else max(left, _OVER * self.allowed)
-            self._sizes.largest = step * left / grown
+            begun = fraction if fraction <= self.allowed else 0.0  # an update is due
+            self._sizes.largest = step * ((1 + _OVER / 2) * self.allowed - begun) / grown
 
     def _end(self, now: MeshPeriod, before: Moment, last: Moment) -> tuple[MeshPeriod, Moment]:
         """Period and moment after a final update, so that the run ends with worn meshes.
@@ -334,8 +333,10 @@ class OuterLoop:
         problem, state, change = updated(now.problem, kept.faces, depth, state, last.time)
         automatic = self._settings.largest_kept
         if self._settings.adapts and change > 0.0:
-            wished = self.allowed * float(np.clip(_CHANGE / change, 0.2, 2.0))
+            target = max(_CHANGE, self._settings.tolerance)
+            before, wished = self.allowed, self.allowed * float(np.clip(target / change, 0.2, 2.0))
             self.allowed = float(np.clip(wished, 0.01 * automatic, _ROOM * automatic))
+            self._sizes.largest *= self.allowed / before
         return self._period(problem), replace(last, state=state)
 
 

@@ -156,7 +156,11 @@ def _common_measure(times: Sequence[float]) -> float:
 
 
 def next_step(
-    step: float, error: float, tolerance: float, former: tuple[float, float] | None = None
+    step: float,
+    error: float,
+    tolerance: float,
+    former: tuple[float, float] | None = None,
+    wanted: float = 0.0,
 ) -> float:
     """Step size expected to meet the tolerance; the error is of third order in the step.
 
@@ -168,13 +172,16 @@ def next_step(
     step, error, tolerance : float
     former : tuple of float, optional
         Size and error of the preceding step; no prediction without them.
+    wanted : float, optional
+        Size that this step would have had, had nothing but its error limited it.
     """
+    most = max(5.0, wanted / step)
     if error == 0.0:
-        return 5.0 * step
+        return most * step
     factor = 0.9 * (tolerance / error) ** (1 / 3)
     if former is not None and factor > 1.0:
         factor *= max(1.0, step / former[0] * (former[1] / error) ** (1 / 3))
-    return step * float(np.clip(factor, 0.2, 5.0))
+    return step * float(np.clip(factor, 0.2, most))
 
 
 def moments(
@@ -317,7 +324,7 @@ class _Steps:
                 step, trouble = size(step / 4), f" ({failure})"
                 continue
             error = trial.error
-            proposed = next_step(step, error, tolerance, former)
+            proposed = next_step(step, error, tolerance, former, last.wanted)
             if error <= tolerance:
                 return trial, step, min(proposed, rounding * trial.following)
             jumps = any(

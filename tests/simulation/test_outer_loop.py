@@ -15,7 +15,7 @@ from thermowear.verification.check import run_starter
 from .hot_ring import HEAT
 
 PUNCH = ("mesh.degree=6", "mesh.elements=4", "analysis.tolerance=1e-3")
-END = 'analysis.end_time="2900 s"'  # shortly behind an update: the last one hardly changes the pressure
+END = 'analysis.end_time="2900 s"'  # behind an update: the last one hardly changes the pressure
 AREA = np.pi * (0.12**2 - 0.02**2)
 
 

@@ -8,11 +8,13 @@ import sys
 
 import numpy as np
 import pytest
+import tomli_w
 
 from thermowear.app.cli import main
 
 from .conftest import COLD_RUNNING_IN, DEMOS, HOT
 from .scripting import on_ranks
+from .simulation.geometry_update.test_outer_loop import STRIP
 
 pytestmark = pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mpirun")
 
@@ -135,6 +137,20 @@ def test_an_error_ends_all_ranks_with_one_message(tmp_path, arguments, message):
     assert done.returncode == 1
     assert done.stderr.count(message) == 1
     assert "Traceback" not in done.stderr
+
+
+def test_a_body_worn_through_is_told_alike(tmp_path):
+    """requirement: time and place, of several that wear alike the same one; the run succeeds."""
+    case, told = tmp_path / "case.toml", []
+    case.write_text(tomli_w.dumps(STRIP | {"mesh": {"degree": 2, "elements": 3, "grading": 0.5}}))
+    for ranks in (1, 2):
+        folder = tmp_path / f"on{ranks}"
+        words = ("run", case, "-o", folder, "--no-pictures", '--set=wear.update="never"')
+        done = thermowear(ranks, *words)
+        assert done.returncode == 0, done.stderr
+        told += [line for line in done.stdout.splitlines() if "worn through" in line]
+    assert len(told) == 2
+    assert told[0] == told[1]
 
 
 def test_a_model_in_python_on_a_distributed_mesh(tmp_path):

@@ -1,12 +1,13 @@
 """Running-in that steady temperatures end: the message names the cause."""
 
+import pytest
 import tomli_w
 
 import thermowear as tw
-from thermowear.errors import StandstillError
+from thermowear.errors import ComputationError, StandstillError
 from thermowear.simulation.analyses.runaway import cause_of
 
-from ..case.starter import STEADY, tables
+from ..case.starter import STEADY, changed, tables
 from ..geometry.plain import NAMES, blocks, msh
 
 
@@ -41,6 +42,18 @@ def test_beyond_the_critical_speed(tmp_path):
         reason = str(result(tmp_path, times * critical, **running_in).stopped)
         assert "states may jump beyond the critical speed" in reason
         assert "heat.transient = true" in reason
+
+
+def test_unworn_faces_beyond_the_critical_speed_of_a_stable_steady_state():
+    """requirement: the unworn state is named, and temperatures in time lead to the steady one."""
+    coarse = {"mesh.degree": 3, "mesh.elements": 6}
+    until = {"type": "transient", "until": "steady", "tolerance": 2e-2, "steady_tolerance": 1e-2}
+    case = changed(tables("block-on-disk-turning"), {"analysis": until})
+    with pytest.raises(ComputationError, match="it is the unworn state that is critical"):
+        tw.run(tw.load(case))
+    in_time = tw.run(tw.load(changed(case, coarse | {"heat.transient": True})))
+    assert in_time.stopped is None
+    assert in_time.summary["distance_from_steady"] <= 1e-2
 
 
 def test_a_regular_state_is_not_called_critical():

@@ -344,8 +344,9 @@ _THIN = 0.1
 """Part of the unworn thickness below which the remaining one does not count less."""
 _DEEP = 0.02
 """Depth, relative to the thickness behind the middle of a face, from which rays are cast."""
-_NOTHING = 2e-3
-"""Part of the thickness whose loss counts as that of all."""
+_NOTHING, _EQUAL = 2e-3, 1e-6
+"""Part of the thickness whose loss counts as that of all; parts that differ by rounding, of which
+the first place is named, however many processes compute them."""
 _RAYS, _AT_ONCE = 500, 16
 """Largest number of rays from a face; number of those compared with all facets together."""
 _GRAZING = 0.05
@@ -468,7 +469,7 @@ class Walls:
                 left = left - np.where(apart <= spacing, kept[own][nearest], 0.0)
         whole = behind - kept[self._rows[key]] + depth
         part = np.where(np.isfinite(whole), left / np.where(np.isfinite(whole), whole, 1.0), np.inf)
-        k = int(np.argmin(part))
+        k = int(np.argmax(part <= part.min() + _EQUAL))
         place = tuple(float(x) for x in system.contacts.each[index].points[k])
         body = system.model.bodies[system.contacts.bodies[index][side]].name
         return Thinnest(float(part[k]), body, float(whole[k]), place)

@@ -28,9 +28,9 @@ _UNWORN = (
     "converge; give the contact a (smaller) heat.conductance, or reduce the speed"
 )
 _WORN_IN = (
-    "; these are the unworn faces in the steady temperatures of their friction heat: worn ones may "
-    "have a steady state, so begin with its shape (geometry.initial_shape), or compute the "
-    "temperatures in time (heat.transient = true)"
+    "; it is the unworn state that is critical, in the steady temperatures of its friction heat: "
+    "worn faces may have a stable one, so begin with the shape of the steady state "
+    "(geometry.initial_shape), or compute the temperatures in time (heat.transient = true)"
 )
 _STEP = "contact: the iteration for the state-dependent properties of a step did not converge"
 

@@ -93,7 +93,7 @@ def test_nothing_jumps_in_the_record(cold):
     """Volumes grow at the rate that the load asks for, across the update, too."""
     for result in cold:
         time, volume = (
-            np.array([getattr(row, key) for row in result.history[-30:]])
+            np.array([getattr(row, key) for row in result.history if row.time > 500.0])
             for key in ("time", "wear_volume_1")
         )
         rates = np.diff(volume) / np.diff(time)

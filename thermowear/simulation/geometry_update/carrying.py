@@ -63,15 +63,19 @@ def carried_wear(before: System, after: System, worn: np.ndarray) -> tuple[np.nd
 def carried_growth(before: System, after: System, grown: np.ndarray) -> np.ndarray:
     """Volume-preserving transfer of the wear of a step (n_wearing, n) to the moved mesh [m]."""
     assert after.worn is not None
-    sides = list(after.laws)
+    return with_volumes(before, grown, after, after.worn.carried(grown, after.contacts))
+
+
+def with_volumes(before: System, grown: np.ndarray, after: System, rows: np.ndarray) -> np.ndarray:
+    """Depths (n_wearing, n) of a system, scaled to the volumes of those of another one [m]."""
+    sides, result = list(after.laws), rows.copy()
     areas = before.worn_areas[sides], after.worn_areas[sides]
-    rows = after.worn.carried(grown, after.contacts)
     for old, new in zip(before.contacts.ranges, after.contacts.ranges, strict=True):
         had = (areas[0] * grown)[:, old].sum(axis=1)
         has = (areas[1] * rows)[:, new].sum(axis=1)
         kept = np.divide(had, has, out=np.ones_like(has), where=has > 0.0)
-        rows[:, new] *= kept[:, None]
-    return rows
+        result[:, new] *= kept[:, None]
+    return result
 
 
 def carried_rise(before: System, after: System, rise: np.ndarray) -> tuple[np.ndarray, float]:

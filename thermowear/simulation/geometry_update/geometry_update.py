@@ -27,6 +27,7 @@ from .carrying import (
     carried_wear,
     change_by_update,
     with_carried_fluxes,
+    with_volumes,
 )
 from .moving_faces import (
     FaceKey,
@@ -113,8 +114,8 @@ def settled(
 ) -> InterfaceState:
     """State after a final update that has not disturbed the pressure. Every rank calls.
 
-    A disturbance is worn off by repeating the last step on the new meshes; not for transient
-    temperatures, which are known at the end of the step only.
+    A disturbance is worn off by repeating the last step on the new meshes, with the same volumes;
+    not for transient temperatures, which are known at the end of the step only.
 
     Parameters
     ----------
@@ -135,7 +136,9 @@ def settled(
         return after
     grown = carried_growth(former.system, problem.system, last.worn - before.worn)
     start = replace(after, worn=after.worn - grown, removed=before.removed)
-    return advance_with_error(problem, start, time, step).state
+    state = advance_with_error(problem, start, time, step).state
+    again = with_volumes(problem.system, grown, problem.system, state.worn - start.worn)
+    return replace(state, worn=start.worn + again, removed=after.removed)
 
 
 def _moved(

@@ -22,12 +22,13 @@ def test_edges_that_have_left_a_coarse_face():
     off at the inner edge, where the hot faces touched last.
     """
     case = DEMOS / "two_pads_3d.toml"
-    result = tw.run(tw.load(case, (UNTIL,)))
+    tolerance = 3e-4
+    result = tw.run(tw.load(case, (UNTIL, f"analysis.steady_tolerance={tolerance}")))
     assert result.stopped is None, result.stopped
-    assert result.summary["distance_from_steady"] <= 1e-3
+    assert result.summary["distance_from_steady"] <= tolerance
     steady = tw.run(tw.load(case)).interface.pressure
     off = np.abs(result.interface.pressure - steady).max() / steady.max()
-    assert 1e-3 < off < 1e-2
+    assert tolerance < off < 1e-2
 
 
 def test_a_limit_that_is_not_the_steady_state(monkeypatch):

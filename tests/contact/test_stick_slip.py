@@ -18,12 +18,14 @@ from thermowear.contact.faces.face import gather_face
 from thermowear.contact.friction import stick_slip
 from thermowear.contact.friction.condensed_friction import condense_tangential
 from thermowear.contact.friction.frictional_contact import unloaded
+from thermowear.contact.friction.slip_wear import SlipWear, WornProfile, WornProfiles
 from thermowear.contact.friction.stick_slip import FullSliding, advance, follow
 from thermowear.contact.friction.stick_slip_state import Status
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.pairing import pair
 from thermowear.contact.solvers.signorini import solve_contact
+from thermowear.laws import PowerWear
 from thermowear.parallel import sum_over_ranks
 from thermowear.reference.elastic_contact.hertz import MindlinLine, contact_modulus
 
@@ -326,6 +328,25 @@ def test_friction_by_coefficient_and_wear(blocks):
     worn = advance(lower, friction, unloaded(contact), loads)
     assert worn.motion - state.motion == pytest.approx([1e-6, 0.0], rel=1e-6, abs=1e-14)
     np.testing.assert_allclose(worn.shear, state.shear, atol=1e-8 * state.pressure.max())
+
+
+def test_a_stick_zone_that_changes_leaves_the_gap(blocks):
+    """requirement: what has been worn opens one gap, wherever the stick zone ends later on."""
+    _, contact = blocks
+    m = contact.basis.shape[1]
+    profile = WornProfile(np.arange(float(m)), contact.areas, 0.0)
+    wear = SlipWear((PowerWear(1e-12),), (WornProfiles((profile,)),), 0.3, 1.0, 100)
+    loads = loaded(normal_force=PRESS, tangential_force=0.28 * PRESS)
+    pressed = advance(contact, 0.3, unloaded(contact, 1), loaded(PRESS, tangential_force=0.0))
+    sticks = np.arange(m) // 2 % 3 > 0
+    state = dataclasses.replace(pressed, part=sticks.astype(float))
+    worn = advance(contact, 0.3, state, loads, wear)
+    new = advance(contact, 0.3, state, loads)
+    assert np.abs(worn.pressure - new.pressure).max() > 0.05 * new.pressure.max()
+    assert worn.spared.any()
+    for part in (np.zeros(m), np.ones(m), ~sticks + 0.0):
+        again = advance(contact, 0.3, dataclasses.replace(worn, part=part), loads)
+        np.testing.assert_allclose(again.pressure, worn.pressure, rtol=1e-5)
 
 
 def test_pressing_a_ring():

@@ -48,14 +48,14 @@ class Growing:
             )
             yield Increment(segment.end, segment, True, state)
 
-    def equilibrium(self, end, worn):
+    def equilibrium(self, end, state):
         self.settled_at.append(end.segment.cycle)
-        return replace(end.state, worn=worn, dissipated=np.full(3, np.nan))
+        return replace(state, dissipated=np.full(3, np.nan))
 
 
 def state_of(worn):
     nothing, none = np.zeros(3), np.zeros((3, 1))
-    loads, edge = (none[0], none[0]), (nothing, nothing, nothing)
+    loads, edge = (none[0], none[0]), (nothing, nothing, nothing, nothing)
     return StickSlipState(nothing, none, none, *loads, nothing, none, nothing, worn, *edge)
 
 

@@ -44,13 +44,20 @@ class CondensedFriction(FrictionalContact):
     compliance: np.ndarray
 
     def increment(
-        self, friction, state: StickSlipState, guess: StickSlipState, loads: Loads, worn, slope
+        self,
+        friction,
+        state: StickSlipState,
+        guess: StickSlipState,
+        loads: Loads,
+        worn,
+        lost=None,
+        slope=None,
     ) -> StickSlipState:
-        opened = self._opened(state.part > 0.0)
-        gap = self.weighted.T @ self.gap + opened @ worn
+        gap = self.weighted.T @ self.gap + self.mass @ worn + state.spared
         compliance = self.compliance
-        if slope is not None:
-            m, compliance = len(worn), compliance.copy()
+        if lost is not None:
+            opened = self.mass + self.spared(state)
+            m, compliance, gap = len(worn), compliance.copy(), gap + opened @ lost
             compliance[:m, :m] += opened @ slope.dense
         given = loads.motions
         free = np.isnan(given)
@@ -71,16 +78,9 @@ class CondensedFriction(FrictionalContact):
             solution = solve_with_fallbacks(problem, closed)
         return self._state_after(state, solution, free, fixed)
 
-    def _opened(self, sticks: np.ndarray) -> np.ndarray:
-        """Weak gaps by worn depths, shape (m, m) [m²].
-
-        Functions overlap. What is worn next to the stick zone would open the gap within it, so that
-        its edge slips and wears, and so on: there, depths open the gap of their own function alone.
-        """
-        if not sticks.any():
-            return self.mass
-        inward = np.where(sticks[:, None], self.mass, 0.0)
-        return self.mass - inward + np.diag(inward.sum(axis=0))
+    def spared(self, state: StickSlipState) -> np.ndarray:
+        inward = np.where(state.part[:, None] > 0.0, self.mass, 0.0)
+        return np.diag(inward.sum(axis=0)) - inward
 
     def _state_after(self, state, solution: CoulombSolution, free, fixed) -> StickSlipState:
         """State at the end of the increment from a solution."""

@@ -78,7 +78,8 @@ class FrictionalContact(PressureSpace):
         guess: StickSlipState,
         loads: Loads,
         worn: np.ndarray,
-        slope: WearSlope | None,
+        lost: np.ndarray | None = None,
+        slope: WearSlope | None = None,
     ) -> StickSlipState:
         """State after one implicit increment, without a change of its worn depths.
 
@@ -93,9 +94,11 @@ class FrictionalContact(PressureSpace):
         loads : Loads
             Loads at the end of the increment.
         worn : ndarray, shape (m,)
-            Worn depth at zero pressure at the end of the increment [m].
+            Worn depth before the increment, at the places of its end [m].
+        lost : ndarray, shape (m,), optional
+            Depth that it wears at zero pressure [m].
         slope : WearSlope, optional
-            Worn depth per pressure [m/Pa].
+            Depth that it wears per pressure [m/Pa].
 
         Raises
         ------
@@ -104,6 +107,14 @@ class FrictionalContact(PressureSpace):
         ComputationError
             If no solution is found.
         """
+
+    def spared(self, state: StickSlipState) -> np.ndarray:
+        """Weak gaps by worn depths beyond those of functions that overlap, shape (m, m) [m²].
+
+        What is worn next to the stick zone would open the gap within it, so that its edge slips and
+        wears, and so on: there, depths open the gap of their own function alone.
+        """
+        return np.zeros((len(self.areas),) * 2)
 
     @abstractmethod
     def lost(self, shear: np.ndarray, slip: np.ndarray, point_slip: np.ndarray) -> np.ndarray:
@@ -143,5 +154,5 @@ def unloaded(
     worn = np.zeros((wearing, m if coefficients is None else coefficients))
     none = np.zeros(m)
     return StickSlipState(
-        none, shears, shears, still, still, free, points, np.zeros(n), worn, none, none, none
+        none, shears, shears, still, still, free, points, np.zeros(n), worn, none, none, none, none
     )

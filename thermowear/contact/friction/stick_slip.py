@@ -68,10 +68,10 @@ def advance(
         worn = own.sum(axis=0)
 
     def solve(lost: np.ndarray, slope: WearSlope, guess: StickSlipState) -> StickSlipState:
-        """Solve contact with the worn depths ``lost + slope λ``."""
-        return contact.increment(friction, state, guess, loads, worn + lost, slope)
+        """Solve contact with the depths ``lost + slope λ`` worn by the increment."""
+        return contact.increment(friction, state, guess, loads, worn, lost, slope)
 
-    after = contact.increment(friction, state, state, loads, worn, None)
+    after = contact.increment(friction, state, state, loads, worn)
     if wear is None:
         return after
     by_slip = IncrementWear(wear, state, contact.areas, travel)
@@ -84,6 +84,9 @@ def advance(
         across = contact.basis @ by_slip.dissipated(after)
         excess = state.excess + np.where(state.crossed, depths.sum(axis=0), 0.0)
         after = replace(after, excess=excess, dissipated=state.dissipated + others + across)
+    if state.part.any():
+        spared = state.spared + contact.spared(state) @ by_slip.at_contact(depths)
+        after = replace(after, spared=spared)
     worn = state.worn + by_slip.profiles(depths)
     lost = wear.repeats * (after.dissipated - state.dissipated)
     return replace(after, worn=worn, dissipated=state.dissipated + lost)

@@ -47,6 +47,8 @@ class StickSlipState:
     part, unsheared, excess : ndarray, shape (m,)
         Part of each coefficient that stuck in the last cycle; of those of which a part slipped,
         the pressure that bears no shear [Pa], and the depth worn since then [m], see `stick_edge`.
+    spared : ndarray, shape (m,)
+        Weak gap by wear next to stick zones, see `FrictionalContact.spared` [m³].
     iterations : int
         Newton iterations of the last increment.
     """
@@ -63,6 +65,7 @@ class StickSlipState:
     part: np.ndarray
     unsheared: np.ndarray
     excess: np.ndarray
+    spared: np.ndarray
     iterations: int = 0
 
     @cached_property

@@ -72,10 +72,18 @@ class FullFriction(FrictionalContact):
         return ProfilesAtPoints(profiles, self.depths, self.areas)
 
     def increment(
-        self, friction, state: StickSlipState, guess: StickSlipState, loads: Loads, worn, slope
+        self,
+        friction,
+        state: StickSlipState,
+        guess: StickSlipState,
+        loads: Loads,
+        worn,
+        lost=None,
+        slope=None,
     ) -> StickSlipState:
-        if slope is None:
+        if lost is None:
             return self._increment(friction, state, guess, loads, worn, np.zeros(len(worn)))
+        worn = worn + lost
         lumped = slope.lumped  # the rest, between points, by iteration
         rest = slope @ guess.pressure - lumped * guess.pressure
         mixing = AndersonMixing(_WEAR_ITERATIONS)

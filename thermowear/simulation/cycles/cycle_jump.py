@@ -43,8 +43,8 @@ class Cycles(Protocol):
         ComputationError
         """
 
-    def equilibrium(self, end: Increment, worn: np.ndarray) -> StickSlipState:
-        """State at equal loads and energy, for other worn depths, shape (n_wearing, m) [m]."""
+    def equilibrium(self, end: Increment, state: StickSlipState) -> StickSlipState:
+        """State at equal loads and energy with the wear of another state."""
 
 
 def fixed_jumps(
@@ -180,11 +180,16 @@ class _TwoPartJump:
         """End of the second part with the estimated error subtracted."""
         if self.part == 0.0:
             return self.end
-        state, before = self.end.state, self.start.worn
-        worn = before + _nonnegative(state.worn - self.excess - before, cycles.areas)
-        dissipated = state.dissipated - self.part * (self.whole.dissipated - state.dissipated)
-        balanced = cycles.equilibrium(self.end, worn)
-        found = replace(balanced, dissipated=dissipated, status=state.status)
+        start, whole, state, part = self.start, self.whole, self.end.state, self.part
+        worn = start.worn + _nonnegative(state.worn - self.excess - start.worn, cycles.areas)
+        dissipated = state.dissipated - part * (whole.dissipated - state.dissipated)
+        spared = state.spared - part * (whole.spared - state.spared)
+        crossed = start.crossed & whole.crossed & state.crossed
+        excess = state.excess - np.where(crossed, part * (whole.excess - state.excess), 0.0)
+        excess = np.maximum(excess, 0.0)
+        settled = replace(state, worn=worn, spared=spared, excess=excess)
+        found = cycles.equilibrium(self.end, settled)
+        found = replace(found, dissipated=dissipated, status=state.status)
         return replace(self.end, state=found)
 
 

@@ -178,9 +178,9 @@ class FrettingPath:
                 increment = replace(increment, state=self._edge.after(states))
             yield increment
 
-    def equilibrium(self, end: Increment, worn: np.ndarray) -> StickSlipState:
+    def equilibrium(self, end: Increment, state: StickSlipState) -> StickSlipState:
         """See `cycle_jump.Cycles`."""
-        state, loads = replace(end.state, worn=worn), self.loads.at(end.segment.instant)
+        loads = self.loads.at(end.segment.instant)
         found = advance(self._contact, self._friction, state, loads, self._wear(0.0))
         return replace(found, dissipated=state.dissipated)
 

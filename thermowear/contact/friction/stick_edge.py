@@ -18,7 +18,7 @@ bounded by ``mu (λ - p*)``, with p* of the time at which wear begins there.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -119,33 +119,17 @@ class StickEdge:
         before, part = states[0].part, stuck.astype(float)
         whole = stuck & ((before == 0.0) | (before == 1.0))
         slips = np.any([state.pressure > 0.0 for state in states], axis=0) & ~stuck
-        crossed = np.flatnonzero(self._grown(slips) & self._grown(self._grown(whole)))
-        crossed = crossed[(slips | stuck)[crossed]]
-        square, smooth, inner = unsheared**2, sp.eye_array(len(part), format="csr"), whole
-        count = _FITTED[len(self.axes) - 1]
-        for _ in range(_SMOOTHINGS):  # pressures alternate next to the edge, between coefficients
-            deeper = inner & ~self._grown(~inner)
-            if deeper.sum() < count // 2:
-                break
-            square, smooth, inner = self.means @ square, self.means @ smooth, deeper
-        inside = np.flatnonzero(inner)
+        crossed = self._grown(slips) & self._grown(self._grown(whole)) & (slips | stuck)
         edge: list[np.ndarray] = []
         cut: list[int] = []
-        if len(inside) >= count // 2:
-            tree = cKDTree(self.places[inside])
-            nearest = tree.query(self.places[crossed], min(count, len(inside)))[1]
-            for number, near in zip(map(int, crossed), inside[nearest], strict=True):
-                found = self._distance(number, near, square, smooth)
-                if found is None:
-                    continue
-                within, outwards, width = found
-                inner_part = within / width + 1.0 - _END / self.degrees[number]
-                outer, total = inner_part <= 0.0, inner_part >= 1.0
-                if not (outer and not stuck[number]) and not (total and stuck[number]):
-                    edge.append(self.places[number] + within * outwards)
-                    cut.append(number)
-                    inner_part = np.clip(inner_part, _LEAST, 1.0 - _LEAST)
-                part[number] = np.clip(inner_part, 0.0, 1.0)
+        for number, found in self._distances(np.flatnonzero(crossed), whole, unsheared**2):
+            within, outwards, width = found
+            inner = within / width + 1.0 - _END / self.degrees[number]
+            if inner < 1.0 if stuck[number] else inner > 0.0:
+                edge.append(self.places[number] + within * outwards)
+                cut.append(number)
+                inner = np.clip(inner, _LEAST, 1.0 - _LEAST)
+            part[number] = np.clip(inner, 0.0, 1.0)
         points = np.reshape(edge, (-1, self.places.shape[1]))
         return StickZone(part, unsheared, points, np.array(cut, dtype=int))
 
@@ -166,6 +150,30 @@ class StickEdge:
             apart = [np.linalg.norm(shear - one, axis=2).max(axis=0) for one in shear]
             least = np.maximum(least, pressure.min(axis=0) - np.max(apart, axis=0) / (2 * friction))
         return stuck, np.maximum(least, 0.0)
+
+    def _distances(
+        self, numbers: np.ndarray, whole: np.ndarray, square: np.ndarray
+    ) -> Iterator[tuple[int, tuple[float, np.ndarray, float]]]:
+        """Coefficients, and what `_distance` tells of those of which it can.
+
+        From p*² of coefficients that stick wholly. Pressures alternate next to the edge, between
+        coefficients: they are smoothed there, if enough of them are left.
+        """
+        smooth, count = sp.eye_array(len(square), format="csr"), _FITTED[len(self.axes) - 1]
+        for _ in range(_SMOOTHINGS):
+            deeper = whole & ~self._grown(~whole)
+            if deeper.sum() < count // 2:
+                break
+            square, smooth, whole = self.means @ square, self.means @ smooth, deeper
+        inside = np.flatnonzero(whole)
+        if len(inside) < count // 2:
+            return
+        tree = cKDTree(self.places[inside])
+        nearest = tree.query(self.places[numbers], min(count, len(inside)))[1]
+        for number, near in zip(map(int, numbers), inside[nearest], strict=True):
+            found = self._distance(number, near, square, smooth)
+            if found is not None:
+                yield number, found
 
     def _distance(
         self, number: int, near: np.ndarray, square: np.ndarray, smooth: sp.csr_array

@@ -37,8 +37,9 @@ _OPENING = 4 / np.pi
 """ε_0 by the width over E*, measured against closed forms of punches on half-planes."""
 _LEAST = 1e-3
 """Least part that sticks of a coefficient of which a part slips, and least part that slips."""
-_FITTED = 8, 40
-"""Number of coefficients that the quadratic function is fitted to, in sections and in space."""
+_FITTED, _FEWEST = (12, 40), (4, 20)
+"""Number of coefficients that the quadratic function is fitted to, in sections and in space, and
+the least of them."""
 _NEAR = 14.0
 """Their largest distance, by the width."""
 _SMOOTHINGS = 2
@@ -159,17 +160,17 @@ class StickEdge:
         From p*² of coefficients that stick wholly. Pressures alternate next to the edge, between
         coefficients: they are smoothed there, if enough of them are left.
         """
-        smooth, count = sp.eye_array(len(square), format="csr"), _FITTED[len(self.axes) - 1]
+        smooth, dim = sp.eye_array(len(square), format="csr"), len(self.axes) - 1
         for _ in range(_SMOOTHINGS):
             deeper = whole & ~self._grown(~whole)
-            if deeper.sum() < count // 2:
+            if deeper.sum() < _FEWEST[dim]:
                 break
             square, smooth, whole = self.means @ square, self.means @ smooth, deeper
         inside = np.flatnonzero(whole)
-        if len(inside) < count // 2:
+        if len(inside) < _FEWEST[dim]:
             return
         tree = cKDTree(self.places[inside])
-        nearest = tree.query(self.places[numbers], min(count, len(inside)))[1]
+        nearest = tree.query(self.places[numbers], min(_FITTED[dim], len(inside)))[1]
         for number, near in zip(map(int, numbers), inside[nearest], strict=True):
             found = self._distance(number, near, square, smooth)
             if found is not None:

@@ -67,14 +67,28 @@ class CoulombProblem:
         return 1 / blocks.ravel()
 
     def relative(self, unknowns: np.ndarray) -> np.ndarray:
-        """Weak gap and slip y of the increment, shape (M,) [m³]."""
-        x, d = np.split(unknowns, [len(self.offset)])
-        return self.compliance @ x + self.offset - self.modes @ d
+        """Weak gap and slip y of the increment, shape (M,) [m³].
+
+        Kept for the last unknowns: an iteration asks for it several times.
+        """
+        if self._last[0] is not unknowns:
+            x, d = np.split(unknowns, [len(self.offset)])
+            self._last[:] = unknowns, self.compliance @ x + self.offset - self.modes @ d
+        return self._last[1]
+
+    @cached_property
+    def _last(self) -> list[np.ndarray | None]:
+        """Last unknowns, and their y."""
+        return [None, None]
+
+    @cached_property
+    def _magnitudes(self) -> np.ndarray:
+        return np.abs(self.compliance)
 
     def sizes(self, unknowns: np.ndarray) -> np.ndarray:
         """Sum of the magnitudes of the terms of y, shape (M,) [m³]."""
         x, d = np.split(np.abs(unknowns), [len(self.offset)])
-        return np.abs(self.compliance) @ x + np.abs(self.offset) + np.abs(self.modes) @ d
+        return self._magnitudes @ x + np.abs(self.offset) + np.abs(self.modes) @ d
 
     def projection(self, unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Projections of the trial tractions, and the sticking coefficients.

@@ -74,8 +74,8 @@ def _verified_from(
 def _newton(problem: CoulombProblem, unknowns: np.ndarray, damped: bool) -> CoulombSolution | None:
     for iteration in range(_MAX_ITERATIONS + 1):
         error = residual(problem, unknowns)
-        small = np.all(np.abs(error) <= _TOLERANCE * scales(problem, unknowns))
-        if small and iteration > 0:  # at least one step: only rounding errors remain
+        # at least one step: only rounding errors remain
+        if iteration and np.all(np.abs(error) <= _TOLERANCE * scales(problem, unknowns)):
             pressure, shear, sticking = problem.projection(unknowns)
             motion = unknowns[len(problem.offset) :]
             return CoulombSolution(pressure, shear, motion, sticking, iteration)

@@ -22,7 +22,11 @@ def face():
     shapes = local @ np.linalg.inv(nodes)
     basis = np.zeros((len(facet), FACETS * DEGREE + 1))
     np.put_along_axis(basis, facet[:, None] * DEGREE + np.arange(DEGREE + 1), shapes, axis=1)
-    pairing = SimpleNamespace(weights=np.tile(w / 2, FACETS), carrying=SimpleNamespace(facet=facet))
+    pairing = SimpleNamespace(
+        weights=np.tile(w / 2, FACETS),
+        carrying=SimpleNamespace(face=SimpleNamespace(sizes=np.ones(FACETS))),
+        pieces=SimpleNamespace(facet=facet, point=np.arange(len(facet))),
+    )
     return pairing, basis, facet + np.tile(t, FACETS)
 
 

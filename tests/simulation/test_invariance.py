@@ -23,8 +23,9 @@ from .invariance_on_ranks import computed
 
 MANY = int(os.environ.get("THERMOWEAR_INVARIANCE", "134"))
 FIRST = int(os.environ.get("THERMOWEAR_SEED", "0"))
-_FOUND = (203, "rotation"), (306, "rotation")
-"""What random cases found: pressures of rounding, and a size along the axes of coordinates."""
+_FOUND = (203, "rotation"), (306, "rotation"), (417, "mirror"), (2029, "mirror")
+"""What random cases found: pressures of rounding, a size along the axes of coordinates, and points
+between facets that counted as points of the first one only."""
 _ON_RANKS = 10
 """Cases that one start of the ranks computes."""
 

@@ -261,8 +261,8 @@ def unresolved_gap(gap: np.ndarray, pressing: np.ndarray, contacts: Contacts, ba
     ndarray, shape (n,)
         Component whose weak values ``Ψᵀ w v`` vanish [m].
     """
-    facet = contacts.facet
-    closed = ~np.isin(facet, facet[~pressing])
+    facets = contacts.facets
+    closed = ~(facets @ ~pressing) @ facets
     used = basis[closed].sum(axis=0) > 0.0
     on_closed = basis[closed][:, used]
     space = PressureSpace(on_closed, scaled(contacts.weights[closed], on_closed))

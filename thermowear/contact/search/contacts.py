@@ -8,6 +8,7 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
+import scipy.sparse as sp
 
 from ...errors import CaseError
 from ..faces.face import Surface
@@ -90,11 +91,13 @@ class Contacts:
         return self._joined("on_body_2")
 
     @cached_property
-    def facet(self) -> np.ndarray:
-        """Facets of the carrying faces, numbered one interface after the other, shape (n,)."""
-        starts = np.cumsum([0, *(len(p.carrying.face.sizes) for p in self.each[:-1])])
-        parts = zip(starts, self.each, strict=True)
-        return _concatenated([start + p.carrying.facet for start, p in parts])
+    def facets(self) -> sp.csr_array:
+        """Points on each facet of the carrying faces, bool (n_facets, n).
+
+        One interface after the other. A point between facets is on each of them, so that which one
+        comes first does not matter.
+        """
+        return sp.csr_array(sp.block_diag([_on_facets(p) for p in self.each], format="csr"))
 
     @cached_property
     def carriers(self) -> np.ndarray:
@@ -127,6 +130,13 @@ class Contacts:
 
     def _joined(self, name: str) -> np.ndarray:
         return _concatenated([getattr(pairing, name) for pairing in self.each])
+
+
+def _on_facets(pairing: Pairing) -> sp.csr_array:
+    """Points on each facet of the carrying face, bool (n_facets, n)."""
+    pieces, shape = pairing.pieces, (len(pairing.carrying.face.sizes), len(pairing.weights))
+    ones = np.ones(len(pieces.facet), dtype=bool)
+    return sp.csr_array((ones, (pieces.facet, pieces.point)), shape=shape)
 
 
 def _concatenated(parts: list[np.ndarray]) -> np.ndarray:

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import scipy.sparse as sp
 
 from ..operators.condensation import CondensedContact
 from ..operators.pressure import Basis, PressureSpace, dense, scaled
@@ -37,7 +38,7 @@ _EDGE_ADVANCE = 2
 """Number of facets that the edge may advance in a step, see `has_passed`."""
 
 
-def edge_points(facet: np.ndarray, basis: Basis, reached: np.ndarray) -> np.ndarray:
+def edge_points(facets: sp.csr_array, basis: Basis, reached: np.ndarray) -> np.ndarray:
     """Contact points of the facets at the edge of the worn zone, or within its reach in a step.
 
     These facets have unworn points, and are at most `_EDGE_ADVANCE` facets away from facets with
@@ -45,8 +46,8 @@ def edge_points(facet: np.ndarray, basis: Basis, reached: np.ndarray) -> np.ndar
 
     Parameters
     ----------
-    facet : ndarray of int, shape (n,)
-        Facets of the points.
+    facets : csr_array of bool, shape (n_facets, n)
+        Points on each facet.
     basis : ndarray or csr_array, shape (n, m)
         Basis Ψ.
     reached : ndarray of bool, shape (n,)
@@ -56,11 +57,11 @@ def edge_points(facet: np.ndarray, basis: Basis, reached: np.ndarray) -> np.ndar
     -------
     ndarray of bool, shape (n,)
     """
-    near = np.isin(facet, facet[reached])
+    near = facets @ reached
     for _ in range(_EDGE_ADVANCE):
-        shared = basis[near].sum(axis=0) > 0.0
-        near = np.isin(facet, facet[basis[:, shared].sum(axis=1) > 0.0])
-    return near & np.isin(facet, facet[~reached])
+        shared = basis[near @ facets].sum(axis=0) > 0.0
+        near = facets @ (basis[:, shared].sum(axis=1) > 0.0)
+    return (near & (facets @ ~reached)) @ facets
 
 
 def has_passed(basis: Basis, points: np.ndarray, before: np.ndarray, after: np.ndarray) -> bool:
@@ -84,13 +85,14 @@ def has_passed(basis: Basis, points: np.ndarray, before: np.ndarray, after: np.n
 
 
 def rough_points(
-    facet: np.ndarray, basis: Basis, weights: np.ndarray, pressure: np.ndarray
+    facets: sp.csr_array, basis: Basis, weights: np.ndarray, pressure: np.ndarray
 ) -> np.ndarray:
     """Contact points of the facets where a pressure is outside of the pressure space.
 
     Parameters
     ----------
-    facet : ndarray of int, shape (n,)
+    facets : csr_array of bool, shape (n_facets, n)
+        Points on each facet.
     basis : ndarray or csr_array, shape (n, m)
         Basis Ψ.
     weights : ndarray, shape (n,) [m²]
@@ -102,7 +104,7 @@ def rough_points(
     """
     space = PressureSpace(basis, scaled(weights, basis))
     left = pressure - basis @ space.projected(pressure)
-    return np.isin(facet, facet[np.abs(left) > _SMOOTH * pressure.max()])
+    return (facets @ (np.abs(left) > _SMOOTH * pressure.max())) @ facets
 
 
 def closing_times(start: np.ndarray, middle: np.ndarray, end: np.ndarray, step: float):

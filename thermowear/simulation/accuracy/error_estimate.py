@@ -263,10 +263,19 @@ def _of_edges(system: System, pressure: np.ndarray, last: np.ndarray) -> float:
 
     Enrichment does not detect that error, as the worn gap is the same.
     """
-    weights, facet = system.weights, system.contacts.facet
-    largest = np.zeros(facet.max() + 1)
-    np.maximum.at(largest, facet, weights)
-    return float(pressure[last] @ largest[facet[last]] / 2 / (weights @ pressure))
+    largest = _over_facets(np.maximum, system, system.weights)
+    return float(pressure[last] @ largest[last] / 2 / (system.weights @ pressure))
+
+
+def _over_facets(extreme: np.ufunc, system: System, values: np.ndarray) -> np.ndarray:
+    """Extreme of values (n,) over all points of the facets of each point, shape (n,)."""
+    facets, result = system.contacts.facets, values.copy()
+    facet, point = facets.nonzero()
+    of_facets = np.zeros(facets.shape[0])
+    of_facets[facet] = values[point]  # any value of each
+    extreme.at(of_facets, facet, values[point])
+    extreme.at(result, point, of_facets[facet])
+    return result
 
 
 def _of_pressure(end: Snapshot, enriched: np.ndarray) -> tuple[float, float]:
@@ -278,12 +287,12 @@ def _of_pressure(end: Snapshot, enriched: np.ndarray) -> tuple[float, float]:
     the mean alone, and the position of the ends in all pressures.
     """
     system, pressure = end.system, end.interface.pressure
-    last, facet = _worn_ends(system, end.interface), system.contacts.facet
+    last, facets = _worn_ends(system, end.interface), system.contacts.facets
     change = np.abs(enriched - pressure)
     mean = _FOLLOWING * float(system.weights @ change / (system.weights @ pressure))
     ends = _of_edges(system, pressure, last)
     mean = max(mean, ends)
-    whole = ~np.isin(facet, facet[last])
+    whole = ~((facets @ last) @ facets)
     whole |= not pressure[whole].any()
     pressure, enriched, change = pressure[whole], enriched[whole], change[whole]
     largest, other = float(pressure.max()), float(enriched.max())
@@ -321,11 +330,9 @@ def _wear_per_pressure(system: System, interface: InterfaceFields) -> np.ndarray
     """
     pressing = interface.pressure > 0
     mean = np.average(interface.pressure[pressing], weights=system.weights[pressing])
-    facet = system.contacts.facet
-    least = np.full(facet.max() + 1, np.inf)
     depth = interface.wear_1 + interface.wear_2
-    np.minimum.at(least, facet, depth)
-    return np.where(least[facet] > 0.0, least[facet], np.maximum(depth, 0.0)) / mean
+    least = _over_facets(np.minimum, system, depth)
+    return np.where(least > 0.0, least, np.maximum(depth, 0.0)) / mean
 
 
 def _coarser_principle(end: Snapshot) -> np.ndarray:

@@ -57,7 +57,7 @@ class GrowingEdge:
 
     def __init__(self, system: System, method: ContactSolver, wear: InterfaceWear, note: Note):
         self.method, self.wear, self._note = method, wear, note
-        self._facet, self._basis = system.contacts.facet, system.basis
+        self._facets, self._basis = system.contacts.facets, system.basis
         self._weights = system.weights
 
     def partial_zones(self, worn: np.ndarray) -> list[np.ndarray]:
@@ -88,10 +88,10 @@ class GrowingEdge:
             return None
         points = np.zeros(worn.shape[1], dtype=bool)
         for zone in zones:
-            points |= edge_points(self._facet, self._basis, zone)
+            points |= edge_points(self._facets, self._basis, zone)
         if before is not None:
             assert pressure is not None
-            points |= before & rough_points(self._facet, self._basis, self._weights, pressure)
+            points |= before & rough_points(self._facets, self._basis, self._weights, pressure)
         if np.count_nonzero(points) > _MOST_POINTS:
             if self._note is not None:
                 self._note(_WEAK)

@@ -37,7 +37,7 @@ AMBIENT = 293.15
 _EXACT = 1e-4
 """Allowed difference of forces, which are given but for inclined normals with friction."""
 _ROUNDING = 1e-15
-"""Of coordinates, relative to the largest."""
+"""Of coordinates and absolute temperatures, relative to the largest."""
 OF_CONTACTS = ("normal_force_N", "contact_force_N", "friction_force_N", "friction_power_W") + (
     "max_pressure_Pa",
     "wear_volume_1_m3",
@@ -127,8 +127,13 @@ def differences(known: Result, found: Result, other: Other) -> Iterator[Check]:
     for column, like in _SCALES.items():
         values = [np.abs(of[key]) for of in first.values() for key in (*like, column)]
         scale = max((np.nanmax(v, initial=0.0) for v in values), default=0.0)
-        if column == "gap":  # the difference of two coordinates
-            scale = max(scale, _ROUNDING * extent / bound)
+        # gaps are differences of coordinates, rises those of temperatures
+        of_parts = {"gap": extent, "temperature": AMBIENT}.get(column.rstrip("_12"), 0.0)
+        scale = max(scale, _ROUNDING * of_parts / bound)
+        if known.friction is not None and column.startswith("wear_rate"):
+            # where the faces come to stick, the last slip is a difference of displacements
+            depths = [of[key].max() for of in first.values() for key in ("wear_1", "wear_2")]
+            scale = max(scale, max(depths) / known.summary["time_s"])
         for name, of in first.items():
             one, two = second[name][column], of[column]
             assert np.array_equal(np.isnan(one), np.isnan(two)), f"{name}: {column}"
@@ -157,9 +162,11 @@ def within_estimates(known: Result, found: Result, other: Other) -> Iterator[Che
     one, two = numbers(known), numbers(found, other.swapped)
     for key, value in one.items():
         allowed, unit = _EXACT if key.endswith("_force_N") else None, key.rpartition("_")[2]
-        if key.endswith("max_pressure_Pa"):
-            allowed = _estimated("max_pressure", known, found)
-        scale = max(abs(v) for k, v in one.items() if k.endswith(unit))
+        scale, other_scale = (
+            max(abs(v) for k, v in each.items() if k.endswith(unit)) for each in (one, two)
+        )
+        if scale and key.endswith("max_pressure_Pa"):
+            allowed = _estimated("max_pressure", (known, scale), (found, other_scale))
         if scale and allowed is not None:
             yield compare(key, two[key], value, allowed, "", scale)
     rise = [
@@ -167,15 +174,23 @@ def within_estimates(known: Result, found: Result, other: Other) -> Iterator[Che
         for each in (columns(known), columns(found, other))
         for side in (1, 2)
     ]
-    allowed = _estimated("temperature", known, found)
-    if max(rise) > 0.0 and allowed is not None:
-        yield compare("largest rise", max(rise[2:]), max(rise[:2]), allowed, "")
+    largest, other_largest = max(rise[:2]), max(rise[2:])
+    if largest:
+        allowed = _estimated("temperature", (known, largest), (found, other_largest))
+        if allowed is not None:
+            yield compare("largest rise", other_largest, largest, allowed, "")
 
 
-def _estimated(quantity: str, *results: Result) -> float | None:
-    """Three times the sum of the estimates, but for rounding; None where one has none."""
-    found = [result.summary[f"{quantity}_error_estimate_relative"] for result in results]
-    return None if None in found else 3 * sum(found) + _EXACT
+def _estimated(quantity: str, *each: tuple[Result, float]) -> float | None:
+    """Three times the sum of the estimates, but for rounding; None where one has none.
+
+    Each is relative to the value in its own result, which is given; the sum is to the first.
+    """
+    key = f"{quantity}_error_estimate_relative"
+    errors = [(result.summary[key], value) for result, value in each]
+    if any(error is None for error, _ in errors):
+        return None
+    return 3 * sum(error * value for error, value in errors) / each[0][1] + _EXACT
 
 
 def _moved(scene: Scene, change: Callable[[np.ndarray], np.ndarray]) -> Scene:

@@ -23,9 +23,13 @@ from .invariance_on_ranks import computed
 
 MANY = int(os.environ.get("THERMOWEAR_INVARIANCE", "134"))
 FIRST = int(os.environ.get("THERMOWEAR_SEED", "0"))
-_FOUND = (203, "rotation"), (306, "rotation"), (417, "mirror"), (2029, "mirror")
-"""What random cases found: pressures of rounding, a size along the axes of coordinates, and points
-between facets that counted as points of the first one only."""
+_FOUND = (
+    (203, "rotation"),  # pressures of rounding
+    (306, "rotation"),  # a size along the axes of coordinates
+    (417, "mirror"),  # points between facets that counted as points of the first one only
+    (2029, "mirror"),
+)
+"""What random cases found."""
 _ON_RANKS = 10
 """Cases that one start of the ranks computes."""
 

@@ -2,6 +2,7 @@
 
 import itertools
 from dataclasses import replace
+from types import SimpleNamespace
 
 from mpi4py import MPI
 
@@ -14,7 +15,7 @@ from thermowear.bulk.kinematics import Axisymmetric, Spatial
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.faces.face import Face, gather_face
 from thermowear.contact.faces.projection import project
-from thermowear.contact.operators.pressure import pressure_basis
+from thermowear.contact.operators.pressure import contact_zones, pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.pairing import pair
@@ -217,3 +218,16 @@ def test_unpaired_is_a_part_of_the_length():
     upper, lower = faces(blocks((3, 4), (1.6, 1.0)))  # facets of unlike length
     pairing = pair(upper, moved(lower, [0.013, 0.0]), Axisymmetric(), 5)
     assert pairing.unpaired == pytest.approx(0.013 / 0.04, rel=1e-9)
+
+
+def test_a_symmetric_pressure_has_a_symmetric_zone():
+    """requirement: points between facets count alike at both ends."""
+    x = np.linspace(0.0, 12.0, 37)  # of 12 facets; those between two are on the first
+    facet = np.maximum(np.ceil(x) - 1, 0)
+    carrying = SimpleNamespace(face=None, facet=facet, t=x - facet)
+    from_middle = (x - 6) / 5.1
+    squared = np.maximum(1 - from_middle**2, 0.0) * (1 + 0.1 * from_middle**2)
+    zones = contact_zones(SimpleNamespace(carrying=carrying, position=x), np.sqrt(squared))
+    ((start, end),) = zones
+    assert start + end == pytest.approx(12.0, rel=1e-12)
+    assert end - start == pytest.approx(10.2, rel=0.1)

@@ -305,8 +305,10 @@ def contact_zones(pairing: Pairing, pressure: np.ndarray) -> list[tuple[float, f
 
 def _edge(pairing: Pairing, pressure: np.ndarray, zone: np.ndarray, part: float) -> float:
     """Position of the edge beyond the last point of a zone."""
-    s, facet = pairing.position[zone], pairing.carrying.facet[zone]
+    s, along = pairing.position[zone], (pairing.carrying.facet + pairing.carrying.t)[zone]
     distance = np.abs(s - s[-1])
+    # points between facets are on those farther from the edge, at either end
+    facet = np.ceil(np.round(np.sign(along[-1] - along[0]) * along, 9))
     last = np.unique(np.abs(facet - facet[-1]))[:_SKIPPED_ELEMENTS]
     chosen = ~np.isin(np.abs(facet - facet[-1]), last)
     chosen &= distance <= _FIT_FRACTION * part * distance[0]

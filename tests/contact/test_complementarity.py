@@ -200,3 +200,16 @@ def test_active_sets_that_return_do_not_end_the_search(first):
     found = active_set(start, partial(_with_active, problem), partial(_pressing, problem), True)
     assert found is not None
     assert found.coefficients == pytest.approx(np.full(3, 1 / 3))
+
+
+@pytest.mark.parametrize("arm", [0.0, 1e-17, -1e-17])
+def test_a_pad_that_touches_right_below_its_pivot(arm):
+    """requirement: one function carries all, up to the rounding of its arm; the least tilt."""
+    modes = np.array([[1.0, -1.0], [2.0, arm], [1.0, 1.0]])
+    compliance, gap = 1e-3 * np.eye(3), np.array([3.0, 0.0, 3.0])
+    found = solve_contact(compliance, gap, modes, np.array([10.0, 0.0]))
+    assert found.coefficients == pytest.approx([0.0, 5.0, 0.0], rel=1e-12, abs=1e-12)
+    assert found.motion == pytest.approx([2.5e-3, 0.0], rel=1e-12, abs=1e-12)
+    # a load beside it tilts the pad until it touches once more
+    found = solve_contact(compliance, gap, modes, np.array([10.0, 1.0]))
+    assert found.coefficients == pytest.approx([0.0, 4.5, 1.0], rel=1e-9)

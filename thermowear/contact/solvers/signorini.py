@@ -28,6 +28,8 @@ _MAX_SETS = 1000
 _MAX_PIVOTS, _WORK = 300, 1e11
 """Largest number of sets tried after one has returned; about the number of products that they may
 cost, though 30 are tried."""
+_FREE = 1e-10
+"""Part of a motion, relative to the largest displacements, that counts as rounding."""
 _BLOCKS = 10
 """Number of changes of several coefficients at once after which fewer must be wrong."""
 Solution = TypeVar("Solution")
@@ -197,37 +199,78 @@ def active_set(
 def _with_active(problem: _Problem, active: np.ndarray) -> SignoriniSolution | None:
     """Solution with closed contact at the active coefficients; None if singular."""
     count = int(active.sum())
-    if count < len(problem.load):
+    if not count and len(problem.load):
         return None
     matrices = problem.compliance, problem.modes, problem.force_modes
     factor = (problem.factors or SaddleFactors(0)).of(active, *matrices)
-    if factor is None:
+    found = None if factor is None else factor.solve(problem.gap[active], problem.load)
+    if found is None:
         return None
-    found = factor.solve(problem.gap[active], problem.load)
     coefficients = np.zeros(len(problem.gap))
     coefficients[active] = found[:count]
     return SignoriniSolution(coefficients, found[count:], active)
 
 
 class SaddlePoint:
-    """Factorised problem ``A λ - R d = -g, Tᵀ λ = F``, scaled by the diagonal of A.
+    """Factorised problem ``A λ - R d = -g, Tᵀ λ = F`` of the active coefficients.
 
-    Parameters as in `saddle_point`, of a single problem.
+    Motions that these do not resist, as of a pad that touches at one function right below its
+    pivot, are not determined: the least one is chosen, and a load along them has no solution.
+
+    Parameters
+    ----------
+    compliance : ndarray, shape (m, m)
+    modes, force_modes : ndarray, shape (m, k)
+    active : ndarray of bool, shape (m,)
     """
 
-    def __init__(self, compliance: np.ndarray, modes: np.ndarray, force_modes: np.ndarray):
-        matrix, self._scale = _scaled_matrix(compliance, modes, force_modes)
-        self.singular = 0
+    def __init__(
+        self,
+        compliance: np.ndarray,
+        modes: np.ndarray,
+        force_modes: np.ndarray,
+        active: np.ndarray,
+    ):
+        reduced = compliance if active.all() else compliance[np.ix_(active, active)]
+        self._moved, _ = _resisted(modes, active)
+        self._carried, self._not_carried = _resisted(force_modes, active)
+        self.singular = int(self._moved.shape != self._carried.shape)
+        if self.singular:
+            return
+        borders = modes[active] @ self._moved, force_modes[active] @ self._carried
+        matrix, self._scale = _scaled_matrix(reduced, *borders)
         if matrix.size:  # nothing presses, and nothing moves
             matrix = np.asfortranarray(matrix)
             self._factor, self._pivots, self.singular = dgetrf(matrix, overwrite_a=1)
 
-    def solve(self, gap: np.ndarray, load: np.ndarray) -> np.ndarray:
-        """λ, then d, for one gap (m,) and load (k,)."""
-        right, scale = -np.concatenate([gap, load]), self._scale[:, 0]
-        if not right.size:
-            return right
-        return dgetrs(self._factor, self._pivots, right / scale)[0].ravel() / scale
+    def solve(self, gap: np.ndarray, load: np.ndarray) -> np.ndarray | None:
+        """λ, then d, for one gap (m,) and load (k,); None if no pressure carries the load."""
+        carried, other = self._carried.T @ load, np.linalg.norm(self._not_carried.T @ load)
+        if other > _FREE * np.linalg.norm(carried):
+            return None
+        right, scale = -np.concatenate([gap, carried]), self._scale[:, 0]
+        if right.size:
+            right = dgetrs(self._factor, self._pivots, right / scale)[0].ravel() / scale
+        return np.concatenate([right[: len(gap)], self._moved @ right[len(gap) :]])
+
+
+def _resisted(modes: np.ndarray, active: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Motions (k, r) that displace active coefficients, all that span them, and others (k, k - r).
+
+    Orthogonal in units of the largest displacements of each mode.
+    """
+    unit = np.abs(modes).max(axis=0, initial=0.0)
+    unit[unit == 0.0] = 1.0
+    rows = modes[active] / unit
+    lengths = np.linalg.norm(rows, axis=1, keepdims=True)
+    rows = np.divide(rows, lengths, out=np.zeros_like(rows), where=lengths > 0.0)
+    padded = np.vstack([rows, np.zeros((len(unit),) * 2)])  # all motions, of few rows too
+    _, sizes, motions = np.linalg.svd(padded, full_matrices=False)
+    rank = int((sizes > _FREE * sizes.max(initial=0.0)).sum())
+    if rank == len(unit):
+        return np.eye(rank), np.zeros((rank, 0))
+    each = motions.T / unit[:, None]
+    return each[:, :rank], each[:, rank:]
 
 
 class SaddleFactors:
@@ -243,9 +286,7 @@ class SaddleFactors:
             same = all(one is two for one, two in zip(known, matrices, strict=True))
             if same and np.array_equal(chosen, active):
                 return factor
-        compliance, modes, force_modes = matrices
-        reduced = compliance if active.all() else compliance[np.ix_(active, active)]
-        factor = SaddlePoint(reduced, modes[active], force_modes[active])
+        factor = SaddlePoint(*matrices, active)
         if factor.singular:
             return None
         if self._kept:
@@ -314,13 +355,15 @@ def _verified(problem: _Problem, solution: SignoriniSolution) -> SignoriniSoluti
     λ = solution.coefficients
     residual = problem.residual(solution)
     force_scale, gap_scale = problem.scales(solution)
-    carried = np.abs(problem.force_modes).T @ np.abs(λ)
+    forces = np.abs(problem.force_modes)
+    carried = forces.T @ np.abs(λ)
+    arms = _FREE * forces.max(axis=0) * force_scale[0]  # right below a pivot they are rounding
     unbalanced = np.abs(problem.force_modes.T @ λ - problem.load)
     wrong = (
         np.any(λ < -_TOLERANCE * force_scale)
         or np.any(residual < -_TOLERANCE * gap_scale)
         or np.any(np.abs(residual[solution.active]) > _TOLERANCE * gap_scale[solution.active])
-        or np.any(unbalanced > _TOLERANCE * (carried + np.abs(problem.load)))
+        or np.any(unbalanced > _TOLERANCE * (carried + np.abs(problem.load)) + arms)
     )
     if wrong or not np.all(np.isfinite(λ)):
         raise NoEquilibrium("contact: no pressure satisfies the contact conditions at this load")

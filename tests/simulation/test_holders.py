@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from thermowear.errors import ComputationError
+import thermowear as tw
+from thermowear.errors import ComputationError, RunNote
 
 from ..case.starter import GONE, solved
+from .random_pads import random_scene
 
 BLOCK, TILTING, DRUM, DISK = (
     "pivoted-block",
@@ -160,3 +162,9 @@ def test_a_soft_layer_takes_the_edges_off():
     assert soft.interface.pressure == pytest.approx(10e6, rel=1e-3)
     assert soft.summary["approach_m"] == pytest.approx(1e-5, rel=1e-2, abs=0.0)
     assert np.abs(soft.interface.gap).max() < 1e-3 * 1e-5
+
+
+def test_a_pad_that_touches_right_below_its_pivot(tmp_path):
+    """requirement: the load is carried; a note says that the pressure leaves the tilt free."""
+    with pytest.warns(RunNote, match="pad0: the pressure does not determine the tilt"):
+        tw.run(tw.load(random_scene(30).case(tmp_path)))

@@ -28,6 +28,8 @@ _FOUND = (
     (306, "rotation"),  # a size along the axes of coordinates
     (417, "mirror"),  # points between facets that counted as points of the first one only
     (2029, "mirror"),
+    (27, "mirror"),  # a pad that touches right below its pivot
+    (30, "in_python"),
 )
 """What random cases found."""
 _ON_RANKS = 10

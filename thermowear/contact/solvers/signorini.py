@@ -232,8 +232,8 @@ class SaddlePoint:
         active: np.ndarray,
     ):
         reduced = compliance if active.all() else compliance[np.ix_(active, active)]
-        self._moved, _ = _resisted(modes, active)
-        self._carried, self._not_carried = _resisted(force_modes, active)
+        self._moved, _ = resisted(modes, active)
+        self._carried, self._not_carried = resisted(force_modes, active)
         self.singular = int(self._moved.shape != self._carried.shape)
         if self.singular:
             return
@@ -254,7 +254,7 @@ class SaddlePoint:
         return np.concatenate([right[: len(gap)], self._moved @ right[len(gap) :]])
 
 
-def _resisted(modes: np.ndarray, active: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def resisted(modes: np.ndarray, active: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Motions (k, r) that displace active coefficients, all that span them, and others (k, k - r).
 
     Orthogonal in units of the largest displacements of each mode.

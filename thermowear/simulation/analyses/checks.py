@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from ...contact.faces.rim import near_chosen, on_edges, rim
-from ...contact.operators.pressure import jumps
+from ...contact.operators.pressure import dense, jumps
 from ...contact.operators.rigid_motion import RigidHolder
 from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import PairedFace
+from ...contact.solvers.signorini import resisted
 from ...errors import CaseError, ComputationError, percent
 from ...geometry.checks.mesh_checks import length
 from ...laws.motions import NOTHING_PRESSED
@@ -36,6 +37,9 @@ _WORN_IN = ("steady", "stability")
 """Analyses whose pressure is that of wear that goes on for ever."""
 _BACK = 1e-3
 """Motion, relative to the smallest face, up to which the drawn faces are those that meet."""
+_PRESSING, _FEW = 1e-9, 100
+"""Pressure that counts as none, relative to the largest one; number of functions next to which a
+motion may be free."""
 _STEEP = -0.75
 """Largest cosine between the outward normals where faces press; up to -0.5 they are paired."""
 _MOLTEN = 3273.15
@@ -135,6 +139,27 @@ def inclined_faces(system: System, pressure: np.ndarray) -> str | None:
     return (
         f"the contact reaches points where the unloaded faces are inclined by {angle:.0f} degrees "
         "to each other; strains are taken to be small, and from 60 degrees on faces are not paired"
+    )
+
+
+def free_motion(system: System, pressure: np.ndarray) -> str | None:
+    """Note on a motion of a holder that no pressing function resists; None if there is none."""
+    if system.model.method != "condensed":
+        return None
+    near = np.flatnonzero(abs(system.basis).T @ pressure)
+    if not 0 < len(near) <= _FEW:  # more of them resist
+        return None
+    coefficients = np.linalg.lstsq(dense(system.basis[:, near]), pressure, rcond=None)[0]
+    pressing = np.zeros(system.basis.shape[1], dtype=bool)
+    pressing[near] = coefficients > _PRESSING * coefficients.max()
+    free = resisted(system.contact.modes, pressing)[1]
+    if not free.shape[1]:
+        return None
+    modes = [mode for mode in system.holder.rigid_modes if mode.amplitude is None]
+    moved = modes[int(np.abs(free[:, 0]).argmax())].bodies
+    return (
+        f"{', '.join(system.model.bodies[k].name for k in moved)}: the pressure does not determine "
+        "the tilt, as the contact is right below the pivot; the least tilt is given"
     )
 
 

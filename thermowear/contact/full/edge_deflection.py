@@ -26,7 +26,7 @@ from scipy.linalg import null_space
 from ...bulk.mechanics.elasticity import Elasticity
 from ..operators.pressure import Basis, dense, scaled
 from ..search.pairing import Pairing
-from .nitsche import lame_at_points
+from .nitsche import lame_at_points, on_every_facet
 
 
 @dataclass(frozen=True)
@@ -73,10 +73,11 @@ def wave_compliance(elastic: Elasticity, pairing: Pairing, degree: int) -> np.nd
 
     The deflection of half-spaces under a pressure ``cos κ x`` is ``2/(E* κ)`` times it (Johnson,
     Contact Mechanics, 1985, section 13.2); the shortest wave has `degree` half-waves on a facet of
-    length h: ``κ = π degree / h``. Every rank calls.
+    length h: ``κ = π degree / h``, the mean of both between two. Every rank calls.
     """
-    side = pairing.carrying
-    return 2 * softness(elastic, pairing) * side.face.sizes[side.facet] / (np.pi * degree)
+    side, point, share = on_every_facet(pairing)
+    length = np.bincount(point, share * side.face.lengths[side.facet])
+    return 2 * softness(elastic, pairing) * length / (np.pi * degree)
 
 
 def softness(elastic: Elasticity, pairing: Pairing) -> np.ndarray:

@@ -15,7 +15,6 @@ import basix
 import numpy as np
 import scipy.sparse as sp
 from dolfinx import fem
-from scipy.spatial import cKDTree
 
 from ...bulk.field import reference_element
 from ...bulk.mechanics.elastic_body import ElasticBody
@@ -162,35 +161,17 @@ def on_every_facet(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray
     Returns
     -------
     side : PairedFace
-        One entry per point and facet, on a surface per point and part of a facet.
+        One entry per point and part of a facet.
     point : ndarray of int
         Point index of each entry.
     share : ndarray
         Sums to one at each point.
     """
-    side, s = pairing.carrying, pairing.carrying.position
-    if side.face.dim == 2:
-        return _on_every_part(pairing)
-    inner = np.arange(1, len(s) - 1)
-    meets = (side.t[inner] > 1 - 1e-9) & (side.facet[inner + 1] == side.facet[inner] + 1)
-    meeting = inner[meets]
-    # the end weights of a rule are proportional to the length of its piece, as is its first step
-    left, right = s[meeting] - s[meeting - 1], s[meeting + 1] - s[meeting]
-    share = np.ones(len(s))
-    share[meeting] = left / (left + right)
-    facet = np.concatenate([side.facet, side.facet[meeting] + 1])
-    t = np.concatenate([side.t, np.zeros(len(meeting))])
-    point = np.concatenate([np.arange(len(s)), meeting])
-    return PairedFace(side.face, facet, t), point, np.concatenate([share, 1 - share[meeting]])
-
-
-def _on_every_part(pairing: Pairing) -> tuple[PairedFace, np.ndarray, np.ndarray]:
-    """Points of a surface on all parts of its facets, see `on_every_facet`."""
-    side, pieces = pairing.carrying, pairing.pieces
-    every = PairedFace(side.face, pieces.facet, pieces.t)
-    point = cKDTree(side.points).query(every.points)[1]
-    area = pieces.weight * side.face.stretch(pieces.facet, pieces.t)
-    return every, point, area / np.bincount(point, area)[point]
+    face, pieces = pairing.carrying.face, pairing.pieces
+    assert pieces.point is not None  # the points are paired
+    every = PairedFace(face, pieces.facet, pieces.t)
+    area = pieces.weight * face.stretch(pieces.facet, pieces.t)
+    return every, pieces.point, area / np.bincount(pieces.point, area)[pieces.point]
 
 
 def nitsche_stiffness(elastic: Elasticity, pairing: Pairing, gamma: float = GAMMA) -> np.ndarray:

@@ -286,7 +286,8 @@ class SaddleFactors:
             same = all(one is two for one, two in zip(known, matrices, strict=True))
             if same and np.array_equal(chosen, active):
                 return factor
-        factor = SaddlePoint(*matrices, active)
+        compliance, modes, force_modes = matrices
+        factor = SaddlePoint(compliance, modes, force_modes, active)
         if factor.singular:
             return None
         if self._kept:

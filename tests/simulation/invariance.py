@@ -38,6 +38,8 @@ _EXACT = 1e-4
 """Allowed difference of forces, which are given but for inclined normals with friction."""
 _ROUNDING = 1e-15
 """Of coordinates and absolute temperatures, relative to the largest."""
+_OF_SLIP = 1e-14
+"""Rounding of the slip in a cycle, relative to the displacements that it is a difference of."""
 OF_CONTACTS = ("normal_force_N", "contact_force_N", "friction_force_N", "friction_power_W") + (
     "max_pressure_Pa",
     "wear_volume_1_m3",
@@ -121,19 +123,16 @@ def differences(known: Result, found: Result, other: Other) -> Iterator[Check]:
             order = _order(first[name]["places"], second[name]["places"], name)
             second[name] = {column: values[order] for column, values in second[name].items()}
     extent = max(np.abs(of["places"]).max() for of in first.values())
+    # of differences of coordinates, of temperatures, and of displacements
+    rounding = {"gap": _ROUNDING * extent, "temperature": _ROUNDING * AMBIENT}
+    rounding |= _by_slip_of_rounding(other.scene, known)
     for name, of in () if other.swapped else first.items():  # places are those on body 1
         places = second[name]["places"].ravel(), of["places"].ravel()
         yield compare_worst(f"{name}: places", *places, bound, "", extent)
     for column, like in _SCALES.items():
         values = [np.abs(of[key]) for of in first.values() for key in (*like, column)]
         scale = max((np.nanmax(v, initial=0.0) for v in values), default=0.0)
-        # gaps are differences of coordinates, rises those of temperatures
-        of_parts = {"gap": extent, "temperature": AMBIENT}.get(column.rstrip("_12"), 0.0)
-        scale = max(scale, _ROUNDING * of_parts / bound)
-        if known.friction is not None and column.startswith("wear_rate"):
-            # where the faces come to stick, the last slip is a difference of displacements
-            depths = [of[key].max() for of in first.values() for key in ("wear_1", "wear_2")]
-            scale = max(scale, max(depths) / known.summary["time_s"])
+        scale = max(scale, rounding.get(column.rstrip("_12"), 0.0) / bound)
         for name, of in first.items():
             one, two = second[name][column], of[column]
             assert np.array_equal(np.isnan(one), np.isnan(two)), f"{name}: {column}"
@@ -144,8 +143,23 @@ def differences(known: Result, found: Result, other: Other) -> Iterator[Check]:
     for key, value in one.items():
         unit = key.rpartition("_")[2]
         scale = max(abs(v) for k, v in one.items() if k.endswith(unit))
+        scale = max(scale, rounding.get(unit, 0.0) / bound)
         if scale:
             yield compare(key, two[key], value, bound, "", scale)
+
+
+def _by_slip_of_rounding(scene: Scene, known: Result) -> dict[str, float]:
+    """Wear by a slip that is rounding of the displacements, if faces fret: they may stick."""
+    tables, given = scene.tables, [h.get("history") for h in scene.tables["holders"].values()]
+    if not all(given):
+        return {}
+    most = max(abs(x) for history in given for _, x in history["tangential_displacement"])
+    period = max(t for history in given for _, t in history["time"])
+    worn = tables["bodies"].keys() & tables["wear"].keys()
+    coefficient = max(_coefficient(tables, name) for name in worn)
+    rate = _OF_SLIP * coefficient * known.interface.pressure.max() * 4 * most / period
+    depth, area = rate * known.summary["time_s"], known.interface.weight.sum()
+    return {"wear_rate": rate, "wear": depth, "m3": depth * area}
 
 
 def _order(places: np.ndarray, others: np.ndarray, name: str) -> np.ndarray:

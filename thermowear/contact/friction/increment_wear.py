@@ -12,6 +12,8 @@ from .stick_slip_state import StickSlipState
 
 _ITERATIONS = 20
 _ROUNDING = 1e-12
+_ROUNDED_SLIP = 1e-13
+"""Slip that is rounding, relative to the displacement of the bodies."""
 
 
 @dataclass(frozen=True)
@@ -30,12 +32,15 @@ class IncrementWear:
     travel : ndarray, shape (n_interfaces,), in space (n_interfaces, 3)
         Displacement of the first bodies along the faces at the end of the increment, see
         `FrictionalContact` [m].
+    travel_before : ndarray
+        That at its start [m].
     """
 
     wear: SlipWear
     before: StickSlipState
     areas: np.ndarray
     travel: np.ndarray
+    travel_before: np.ndarray
 
     @cached_property
     def wear_transfer(self) -> tuple[np.ndarray, ...]:
@@ -74,6 +79,12 @@ class IncrementWear:
     def depths(self, pressure: np.ndarray, last: StickSlipState) -> np.ndarray:
         """Depths worn off the bodies at the contact, shape (n_wearing, m) [m]."""
         return self.wear.depths(*self._wearing(pressure, last))
+
+    def rounding(self, pressure: np.ndarray) -> float:
+        """Largest depth at the contact by a slip that is rounding [m]."""
+        moved = max(np.abs(travel).max() for travel in (self.travel, self.travel_before))
+        slip = np.full(len(pressure), _ROUNDED_SLIP * moved)
+        return float(self.at_contact(self.wear.depths(pressure, slip)).max())
 
     def profiles(self, depths: np.ndarray) -> np.ndarray:
         """Coefficients of the profile of each body, shape (n_wearing, m_Ψ), from `depths` [m]."""

@@ -74,9 +74,10 @@ def advance(
     after = contact.increment(friction, state, state, loads, worn)
     if wear is None:
         return after
-    by_slip = IncrementWear(wear, state, contact.areas, travel)
+    by_slip = IncrementWear(wear, state, contact.areas, travel, contact.travel @ state.motion)
     if by_slip.value(after.pressure, after).any():
-        after = newton_with_wear(solve, by_slip, after, _WEAR_TOLERANCE, _NOT_CONVERGED)
+        rounding = by_slip.rounding(after.pressure)
+        after = newton_with_wear(solve, by_slip, after, _WEAR_TOLERANCE, _NOT_CONVERGED, rounding)
     depths = by_slip.depths(after.pressure, after)
     if state.crossed.any():
         slipped = after.slip - state.slip, after.point_slip - state.point_slip

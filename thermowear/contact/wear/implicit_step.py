@@ -157,6 +157,7 @@ def newton_with_wear(
     guess: Solution,
     tolerance: float = _TOLERANCE,
     failure: str = _FAILED,
+    rounding: float = 0.0,
 ) -> Solution:
     """Solve contact with pressure-dependent wear in an implicit step by Newton's method.
 
@@ -171,6 +172,8 @@ def newton_with_wear(
         Error of the linearised wear, relative to its largest value.
     failure : str, optional
         Message of the error.
+    rounding : float, optional
+        Error that is rounding, whatever the wear.
 
     Raises
     ------
@@ -183,7 +186,7 @@ def newton_with_wear(
         guess = solve(value - slope @ pressure, slope, guess)
         exact = wear.value(guess.pressure, guess)
         error = np.abs(exact - value - slope @ (guess.pressure - pressure)).max()
-        if error <= tolerance * np.abs(exact).max():
+        if error <= max(tolerance * np.abs(exact).max(), rounding):
             return guess
         back = 0.0 if error < least else 0.5
         pressure, least = back * pressure + (1 - back) * guess.pressure, min(error, least)

@@ -36,8 +36,9 @@ _SCALES = {
 AMBIENT = 293.15
 _EXACT = 1e-4
 """Allowed difference of forces, which are given but for inclined normals with friction."""
-_ROUNDING = 1e-15
-"""Of coordinates and absolute temperatures, relative to the largest."""
+_ROUNDING = 2e-15
+"""Of differences of coordinates and absolute temperatures, relative to the largest: turned, moved
+and converted, each coordinate of both points is rounded a few times."""
 _OF_SLIP = 1e-14
 """Rounding of the slip in a cycle, relative to the displacements that it is a difference of."""
 OF_CONTACTS = ("normal_force_N", "contact_force_N", "friction_force_N", "friction_power_W") + (
@@ -123,8 +124,9 @@ def differences(known: Result, found: Result, other: Other) -> Iterator[Check]:
             order = _order(first[name]["places"], second[name]["places"], name)
             second[name] = {column: values[order] for column, values in second[name].items()}
     extent = max(np.abs(of["places"]).max() for of in first.values())
-    # of differences of coordinates, of temperatures, and of displacements
-    rounding = {"gap": _ROUNDING * extent, "temperature": _ROUNDING * AMBIENT}
+    # of differences of coordinates, as they are given, of temperatures, and of displacements
+    far = max(np.abs([one.x, one.y, one.z]).max() for one in (known.interface, found.interface))
+    rounding = {"gap": _ROUNDING * far, "temperature": _ROUNDING * AMBIENT}
     rounding |= _by_slip_of_rounding(other.scene, known)
     for name, of in () if other.swapped else first.items():  # places are those on body 1
         places = second[name]["places"].ravel(), of["places"].ravel()

@@ -168,3 +168,9 @@ def test_a_pad_that_touches_right_below_its_pivot(tmp_path):
     """requirement: the load is carried; a note says that the pressure leaves the tilt free."""
     with pytest.warns(RunNote, match="pad0: the pressure does not determine the tilt"):
         tw.run(tw.load(random_scene(30).case(tmp_path)))
+
+
+def test_a_hot_pad_that_tips_says_so(tmp_path):
+    """requirement: the reason is not its heat where it has no equilibrium without heat either."""
+    with pytest.raises(ComputationError, match="tips it over an edge"):
+        tw.run(tw.load(random_scene(24).case(tmp_path)))

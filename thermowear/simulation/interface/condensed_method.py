@@ -94,14 +94,18 @@ class CondensedMethod:
             return self._balanced(gap, slope, guess, conditions, heat, pointwise)
         except NoEquilibrium as error:
             cause = _LOCKED if conditions.friction.any() else _TIPPED
-            if heat is not None:
-                beyond = isinstance(error, _Unstable)
-                cause = _CRITICAL.format("") if beyond else self._hot_cause(gap, conditions, heat)
+            if isinstance(error, _Unstable):
+                cause = _CRITICAL.format("")
+            elif heat is not None:
+                cause = self._hot_cause(gap, conditions, heat, cause)
             parted = parted_by_fluid(self._system, conditions.load)
             raise parted or ComputationError(f"{error}; {cause}") from None
 
-    def _hot_cause(self, gap, conditions, heat) -> str:
-        """Cause of a contact without equilibrium, by the stability of its zone without heat."""
+    def _hot_cause(self, gap, conditions, heat, cold_cause: str) -> str:
+        """Cause of a contact without equilibrium, by the stability of its zone without heat.
+
+        That of the contact without heat if it has none either.
+        """
         bodies, compliance = self._contact, self._contact.compliance
         thermal, opening = heat.coupling(conditions, bodies.basis)
         weak = bodies.weighted.T @ (gap + self._dead) + opening
@@ -114,7 +118,9 @@ class CondensedMethod:
                 force_modes=bodies.force_modes,
             )
             factor = critical_factor(compliance, thermal, bodies.modes, cold.active)
-        except (NoEquilibrium, np.linalg.LinAlgError):
+        except NoEquilibrium:
+            return cold_cause
+        except np.linalg.LinAlgError:
             return _SMALL
         return _CRITICAL.format(f", {1 / factor:.3g} times it") if factor < 1.0 else _SMALL
 

@@ -122,10 +122,21 @@ def test_without_an_end():
 
 def test_any_size_leaves_no_tiny_step():
     """requirement: the last two steps are alike."""
-    steps = walk(AnySize(), (1.0,), lambda time: 0.3)
+    steps = walk(AnySize(), (1.0,), lambda time: 0.3125)
     assert sum(steps) == pytest.approx(1.0)
     assert min(steps) > 0.15
-    assert max(steps) == 0.3
+    assert max(steps) == 0.3125
+
+
+@pytest.mark.parametrize("wanted", [1e-12, 0.3, 0.7313, 1.0, 5e7])
+def test_rounding_does_not_reach_the_sizes(wanted):
+    """requirement: sizes that differ by rounding are one, hardly smaller; whole bounds are kept."""
+    sizes = AnySize()
+    given = wanted * (1 + 1e-10 * np.linspace(1, 2, 20))
+    (size,) = {sizes.at_most(one, 0.0, 0.0, math.inf) for one in given}
+    assert wanted / sizes.rounding < size <= given[0]
+    assert AnySize(0.3).at_most(wanted, 0.0, 0.0, math.inf) == min(0.3, size)
+    assert sizes.at_most(math.inf, 0.0, 0.0, 2.0) == 2.0
 
 
 @pytest.mark.parametrize("times", [(0.1, 1.0, 10.0), (1.0, 2.7182818, 4.0), (1.0, 6.0, 7.0, 20.0)])

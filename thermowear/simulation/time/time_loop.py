@@ -33,6 +33,8 @@ _ON_GRID = 1e3
 """Least step on the grid of steps, relative to the rounding of times: no other time lies there."""
 _FEW = 5
 """Largest number of powers of two that make up an interval; bounds the number of small steps."""
+_STEPS_OF_SIZE = 1024
+"""Number of sizes of steps up to a power of two, a half of them above the one before."""
 _ROUNDING, _STILL = 1e-9, 20
 """Error and number of successive steps, ever larger ones, in which nothing changes any more."""
 
@@ -70,9 +72,18 @@ class StepSizes(ABC):
 
 
 class AnySize(StepSizes):
-    """Largest admissible steps that do not leave a tiny last one."""
+    """Largest admissible steps of few digits that do not leave a tiny last one.
+
+    Errors of steps in which points begin to press depend strongly on the size, and the next size on
+    the error: rounding that reached the sizes would grow from step to step.
+    """
+
+    rounding = 1 + 2 / _STEPS_OF_SIZE
 
     def at_most(self, wanted: float, time: float, begin: float, end: float) -> float:
+        mantissa, exponent = math.frexp(wanted)
+        if math.isfinite(wanted):
+            wanted = math.ldexp(math.floor(mantissa * _STEPS_OF_SIZE) / _STEPS_OF_SIZE, exponent)
         left, wanted = end - time, min(wanted, self.largest)
         return left if ends(wanted, left) else min(wanted, max(left / 2, 0.1 * wanted))
 

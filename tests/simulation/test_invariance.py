@@ -28,6 +28,10 @@ _FOUND = (
     (306, "rotation"),  # a size along the axes of coordinates
     (417, "mirror"),  # points between facets that counted as points of the first one only
     (2029, "mirror"),
+    (153, "mirror"),  # sizes of steps in which rounding grew: penalty in a section,
+    (2949, "mirror"),  # in space,
+    (615, "mirror"),  # and Nitsche's method
+    (508, "mirror"),  # points that begin to press by what others wore
     (27, "mirror"),  # a pad that touches right below its pivot
     (30, "in_python"),
     (76, "order_of_bodies"),  # faces that come to stick and wear by a slip of rounding

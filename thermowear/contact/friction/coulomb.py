@@ -71,15 +71,15 @@ class CoulombProblem:
 
         Kept for the last unknowns: an iteration asks for it several times.
         """
-        if self._last[0] is not unknowns:
+        if not any(of is unknowns for of, _ in self._last):
             x, d = np.split(unknowns, [len(self.offset)])
-            self._last[:] = unknowns, self.compliance @ x + self.offset - self.modes @ d
-        return self._last[1]
+            self._last[:] = [(unknowns, self.compliance @ x + self.offset - self.modes @ d)]
+        return self._last[0][1]
 
     @cached_property
-    def _last(self) -> list[np.ndarray | None]:
-        """Last unknowns, and their y."""
-        return [None, None]
+    def _last(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Last unknowns with their y."""
+        return []
 
     @cached_property
     def _magnitudes(self) -> np.ndarray:

@@ -262,7 +262,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         return HeatRow(
             time=moment.time,
             speed=self._speed,
-            normal_force=sum(system.normal_forces(pressure)),
+            normal_force=float(sum(np.linalg.norm(each @ pressure) for each in system.resultants)),
             friction_power=float(system.weights @ (conditions.heating * pressure)),
             heat_in=balance.made,
             heat_stored=balance.stored,

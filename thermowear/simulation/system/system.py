@@ -149,15 +149,21 @@ class System:
         return load_directions(self.model, self.contacts)
 
     def normal_forces(self, pressure: np.ndarray) -> list[float]:
-        """Resultants of the pressure on the faces of each interface, ``|∫ p n dA|`` [N].
+        """Resultants of the pressure on the faces of each interface, ``|∫ p n dA|`` [N]."""
+        return [float(np.linalg.norm(each @ pressure)) for each in self.resultants]
+
+    @cached_property
+    def resultants(self) -> list[np.ndarray]:
+        """Forces at each interface per pressure at the points, shape (k, n) [m²].
 
         Of the whole body: components cancel along the radius of an axisymmetric model, and across
         planes of symmetry that cut both bodies.
         """
         found = []
         for interface, (pairing, own) in zip(self.model.interfaces, self.contacts, strict=True):
-            force = (pairing.weights * pressure[own]) @ pairing.normals
-            found.append(float(np.linalg.norm(force[~self.cancelled(interface)])))
+            remaining = pairing.normals[:, ~self.cancelled(interface)].T
+            found.append(np.zeros((len(remaining), len(self.weights))))
+            found[-1][:, own] = remaining * pairing.weights
         return found
 
     def cancelled(self, interface: Interface) -> np.ndarray:

@@ -214,6 +214,14 @@ class HeatExchange:
         heat = one @ (w * (s1 * T1 + across)) + two @ (w * (s2 * T2 - across))
         return loads + np.concatenate([heat, self._crossing.T @ (w * (T1 - T2))])
 
+    def closing(self, difference: np.ndarray, excess: np.ndarray) -> np.ndarray:
+        """Loads that close what jumps ``T1 - T2`` (n, k) miss of those of excess heat (m, k)."""
+        face, weights = self.face, self.face.weights[:, None]
+        functions = scaled_functions(face.functions, self.scale)
+        resisted = self.division[2][:, None] * (face.functions @ excess)
+        jumps = self._crossing.T @ (weights * difference) + functions.T @ (weights * resisted)
+        return np.concatenate([np.zeros((self._count, jumps.shape[1])), jumps])
+
     def solved(self, friction_heat: np.ndarray, baseline: BaselineResponse | None = None):
         """Changes of the rises of both faces at the points, and heat from face 2 to face 1."""
         found = self.response(self.loads(friction_heat, baseline))

@@ -111,7 +111,7 @@ def test_perfect_contact_is_the_limit_of_conductance(part):
 @pytest.mark.slow
 @pytest.mark.parametrize("case", CONVERGING)
 def test_growth_converges_to_that_of_perfect_contact(case):
-    """requirement: growth rates agree on all meshes, and perfect contact is the limit to 1e-5."""
+    """requirement: growth rates agree on all meshes, and perfect contact is the limit to 1e-4."""
     for conductance in (tables(case)["heat"].get("conductance", "1e4 W/(m^2 K)"), GONE):
         found = []
         for degree, elements, grading in MESHES:
@@ -121,7 +121,7 @@ def test_growth_converges_to_that_of_perfect_contact(case):
             print(case, conductance or "perfect", degree, elements, *found[-1])  # with pytest -s
             if conductance is GONE:
                 limit = rate_and_critical(case, changes | {"heat.conductance": "1e10 W/(m^2 K)"})
-                np.testing.assert_allclose(found[-1], limit, rtol=1e-5)
+                np.testing.assert_allclose(found[-1], limit, rtol=1e-4)
         for (degree, *_), values in zip(MESHES, found, strict=True):
             np.testing.assert_allclose(values, found[-1], rtol=0.08 if degree == 1 else 0.02)
 

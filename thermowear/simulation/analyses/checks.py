@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...contact.faces.rim import near_chosen, on_edges, rim
-from ...contact.operators.pressure import dense, jumps
+from ...contact.operators.pressure import dense, jumps, scaled
 from ...contact.operators.rigid_motion import RigidHolder
 from ...contact.search.contacts import Contacts
 from ...contact.search.pairing import PairedFace
@@ -152,7 +152,8 @@ def free_motion(system: System, pressure: np.ndarray) -> str | None:
     coefficients = np.linalg.lstsq(dense(system.basis[:, near]), pressure, rcond=None)[0]
     pressing = np.zeros(system.basis.shape[1], dtype=bool)
     pressing[near] = coefficients > _PRESSING * coefficients.max()
-    free = resisted(system.contact.modes, pressing)[1]
+    weak = scaled(system.weights, system.basis).T @ system.holder.modes
+    free = resisted(weak, pressing)[1]
     if not free.shape[1]:
         return None
     modes = [mode for mode in system.holder.rigid_modes if mode.amplitude is None]

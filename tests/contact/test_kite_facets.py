@@ -34,7 +34,7 @@ def test_parts_of_facets_cover_them_once(tmp_path, hexahedra, orders):
     geometry = MeshFile.model_validate(tables, context={MODEL: "3d"})
     bodies = distribute(geometry.build(MeshTable(), None), MPI.COMM_WORLD)
     faces = gather_faces(bodies, ("PAD_FACE", "DISK_FACE"))
-    facet, _, corners = parts_opposite(*faces)
+    facet, corners = parts_opposite(*faces)
     (x, y), (u, v) = corners.transpose(2, 0, 1), np.roll(corners, -1, axis=1).transpose(2, 0, 1)
     areas = np.sum(x * v - u * y, axis=1) / 2
     assert areas.min() > -1e-9

@@ -12,10 +12,8 @@ from thermowear.contact.faces.projection import project
 from thermowear.contact.operators.pressure import contact_zones, pressure_basis
 from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.clipping import parts_opposite
-from thermowear.contact.search.common_face import opposite
 from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.pairing import pair
-from thermowear.contact.search.refinement import rule
 from thermowear.parallel import sum_over_ranks
 
 from ..bulk.fields import interpolated
@@ -151,28 +149,6 @@ def test_matching_faces_have_the_nodes_of_one_rule():
     assert pairing.points[:, 0].max() == SIZE[0]
 
 
-@pytest.mark.parametrize("cell_type", CELLS)
-def test_facets_that_are_opposite_to_parts(cell_type):
-    """requirement: points of a part lie opposite to its facet of the other face, and are found from
-    there, or from any other facet, where the search among all facets finds them.
-    """
-    upper, lower = faces(OTHER, 2, (bent, bent), cell_type)
-    pieces = rule(upper, lower, 4, True, 0.0)
-    assert pieces.near is not None
-    at = upper, pieces.facet, pieces.t, lower
-    sought = opposite(*at)
-    t = sought.t
-    outer = t.sum(axis=1) if cell_type == "tetrahedron" else t.max(axis=1)
-    inner = (t.min(axis=1) > 0.01) & (outer < 0.99)
-    assert inner.sum() > 30
-    np.testing.assert_array_equal(sought.facet[inner], pieces.near[inner])
-    for near in (pieces.near, (pieces.near + 1) % len(lower.nodes)):
-        found = opposite(*at, near=near)
-        places = [lower.points(one.facet, one.t) for one in (found, sought)]
-        np.testing.assert_allclose(*places, rtol=0, atol=1e-12 * SIZE[0])
-        np.testing.assert_allclose(found.gap, sought.gap, rtol=0, atol=1e-12 * SIZE[0])
-
-
 @pytest.mark.parametrize("axes", [(0, 1, 2), (1, 0, 2)])
 def test_parts_are_where_both_facets_are(axes):
     """requirement: a turned square opposite to one leaves a regular octagon, whichever way each
@@ -190,7 +166,7 @@ def test_parts_are_where_both_facets_are(axes):
     )
     if upper.middle_normals[0] @ lower.middle_normals[0] > 0:
         lower = replace(lower, outward=-lower.outward)
-    facet, _, corners = parts_opposite(upper, lower)
+    facet, corners = parts_opposite(upper, lower)
     assert set(facet) == {0}
     side = np.sqrt(2) - 1
     following = np.roll(corners, -1, axis=1)

@@ -17,17 +17,13 @@ MIN_COSINE = 0.3
 """Smallest magnitude of the cosine between a line and the normal of the face that it meets."""
 
 
-def project(
-    face: FacetSet, points: np.ndarray, near: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def project(face: FacetSet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Closest-point projection on a face.
 
     Parameters
     ----------
     face : FacetSet
     points : ndarray, shape (n, gdim) [m]
-    near : ndarray of int, shape (n,), optional
-        Facets to begin with, see `nearest`.
 
     Returns
     -------
@@ -36,10 +32,7 @@ def project(
     offset : ndarray, shape (n, gdim)
         Vector from each point to its projection [m].
     """
-    if near is None:
-        facet, t = _closest(face, points)
-    else:
-        facet, t = nearest(face, points, near, face.inside(face.flattened.parameters(near, points)))
+    facet, t = _closest(face, points)
     t = t[:, 0] if face.dim == 1 else t
     return facet, t, face.points(facet, t) - points
 

@@ -47,15 +47,15 @@ _SIDES = {
 
 
 @lru_cache(maxsize=16)
-def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarray]:
     """Parts of the facets of body 1 that lie opposite to a facet of body 2.
 
     The results for the last faces are cached: the error estimate uses coarser rules on them.
 
     Returns
     -------
-    facet, near : ndarray of int, shape (n,)
-        Facets of body 1 and of body 2.
+    facet : ndarray of int, shape (n,)
+        Facet of body 1.
     corners : ndarray, shape (n, 4, 2)
         Corners of each part, in parameters of the facet, anticlockwise; the last two of a triangle
         coincide.
@@ -63,11 +63,11 @@ def parts_opposite(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.nda
     same = _coinciding(face_1, face_2)
     first, second = _candidates(face_1, face_2)
     chosen = (same[first] < 0) | (same[first] == second)
-    polygons, first, second = _outlines_in(face_1, face_2, first[chosen], second[chosen], same)
+    polygons, first = _outlines_in(face_1, face_2, first[chosen], second[chosen], same)
     for side in range(len(_SIDES[face_1.kind])):
         polygons = cut(polygons, _heights(face_1.kind, polygons.points)[:, side])
     corners, of = divided(tidied(polygons), face_1.kind)
-    return first[of], second[of], corners
+    return first[of], corners
 
 
 def _candidates(face_1: Surface, face_2: Surface) -> tuple[np.ndarray, np.ndarray]:
@@ -101,7 +101,7 @@ def _coinciding(face_1: Surface, face_2: Surface) -> np.ndarray:
 
 def _outlines_in(
     face_1: Surface, face_2: Surface, first: np.ndarray, second: np.ndarray, same: np.ndarray
-) -> tuple[Polygons, np.ndarray, np.ndarray]:
+) -> tuple[Polygons, np.ndarray]:
     """Outlines of facets of body 2 in the parameters of facets of body 1, without redundant points.
 
     Facets with the same nodes have the same outline; it is not searched, as parameters extended
@@ -119,8 +119,8 @@ def _outlines_in(
     -------
     polygons : Polygons
         Anticlockwise.
-    first, second : ndarray of int, shape (n_polygons,)
-        Facets of body 1 and of body 2.
+    first : ndarray of int, shape (n_polygons,)
+        Facet of body 1.
     """
     points, normals, softness = (column[second] for column in _outlines(face_2))
     t = face_1.flattened.parameters(first[:, None, None], points)
@@ -140,7 +140,7 @@ def _outlines_in(
     t = _snapped(t, face_1.kind)
     kept = _necessary_points(t)
     polygons = Polygons(t[:, :, :-1][kept], np.nonzero(kept)[0])
-    return anticlockwise(polygons), first, second
+    return anticlockwise(polygons), first
 
 
 def _outlines(face: Surface) -> tuple[np.ndarray, ...]:

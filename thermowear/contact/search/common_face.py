@@ -94,12 +94,7 @@ class Opposite:
 
 
 def opposite(
-    face: Face | Surface,
-    facet: np.ndarray,
-    t: np.ndarray,
-    other: Face | Surface,
-    comm=None,
-    near: np.ndarray | None = None,
+    face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face | Surface, comm=None
 ) -> Opposite:
     """Points of another face opposite to points of a face.
 
@@ -111,26 +106,20 @@ def opposite(
     other : Face or Surface
     comm : mpi4py.MPI.Comm, optional
         Ranks that share the work; every rank calls, with the same points.
-    near : ndarray of int, shape (n,), optional
-        Facets of the other face at or next to the closest points, which spare their search.
     """
 
     def found(rows: slice) -> tuple[np.ndarray, ...]:
-        return _opposite(face, facet[rows], t[rows], other, None if near is None else near[rows])
+        return _opposite(face, facet[rows], t[rows], other)
 
     return Opposite(*rows_over_ranks(comm, len(facet), found))
 
 
 def _opposite(
-    face: Face | Surface,
-    facet: np.ndarray,
-    t: np.ndarray,
-    other: Face | Surface,
-    near: np.ndarray | None,
+    face: Face | Surface, facet: np.ndarray, t: np.ndarray, other: Face | Surface
 ) -> tuple[np.ndarray, ...]:
     """Columns of `Opposite`."""
     points, outward = face.points(facet, t), face.smooth_normals(facet, t)[0]
-    closest, at, offset = project(other, points, near)
+    closest, at, offset = project(other, points)
     overhangs = overhang(other, closest, at, offset)
     facet, t, line = opposite_parameters(
         points, outward, face.softness_at(facet), other, closest, at, nearest

@@ -234,7 +234,7 @@ def paired(
     """
     facet, t = pieces.facet, pieces.t
     on_face = face_1.points(facet, t)
-    pairs = opposite(face_1, facet, t, face_2, comm, pieces.near)
+    pairs = opposite(face_1, facet, t, face_2, comm)
     weights = pieces.weight * stretch(face_1, facet, t, face_2, pairs)
     on_common = on_face + pairs.share[:, None] * pairs.offset
     weights *= np.maximum(kinematics.area_factor(on_common), 0.0)  # rounding on the axis

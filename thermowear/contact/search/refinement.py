@@ -38,8 +38,6 @@ class Rule:
         Parameters.
     weight : ndarray, shape (n,)
         Length or area in parameters; the sum is that of the facet if it is fully opposite.
-    near : ndarray of int or None, shape (n,)
-        Facet of body 2 opposite to the part of each point; None where it is not known.
     point : ndarray of int or None, shape (n,)
         Contact point that each point is merged into; None before it is paired.
     """
@@ -47,7 +45,6 @@ class Rule:
     facet: np.ndarray
     t: np.ndarray
     weight: np.ndarray
-    near: np.ndarray | None = None
     point: np.ndarray | None = None
 
 
@@ -99,7 +96,7 @@ def _cuts(face_1: Face, face_2: Face, sliver: float) -> list[np.ndarray]:
 
 def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
     """Rules on the opposite parts of facets: Gauss-Lobatto, in triangles without their edges."""
-    facet, near, corners = parts_opposite(face_1, face_2)
+    facet, corners = parts_opposite(face_1, face_2)
     triangular = np.all(corners[:, 2] == corners[:, 3], axis=1)
     parts = []
     for kind, of_kind, listed in (
@@ -111,8 +108,7 @@ def _on_parts(face_1: Surface, face_2: Surface, order: int) -> Rule:
         at, u, v = np.einsum("dqc,pci->dpqi", table, corners[chosen][:, listed])
         area = weights * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
         at = np.clip(at, 0.0, 1.0)  # corners on an edge may lie beyond it by rounding
-        on, opposite_to = (np.repeat(facets[chosen], len(weights)) for facets in (facet, near))
-        parts.append((on, at.reshape(-1, 2), area.ravel(), opposite_to))
+        parts.append((np.repeat(facet[chosen], len(weights)), at.reshape(-1, 2), area.ravel()))
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
     counting = columns[2] > 0.0
     by_facet = np.argsort(columns[0][counting], kind="stable")

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
-from thermowear.contact.friction.stick_edge import radius_of, stick_edge
+from thermowear.contact.friction.stick_edge import gap_beside, held_back, radius_of, stick_edge
 from thermowear.contact.friction.stick_slip import follow
+from thermowear.reference.elastic_contact.fretting_sphere import FrettingSphere
 from thermowear.reference.elastic_contact.hertz import MindlinLine
+from thermowear.reference.elastic_contact.mindlin_sphere import MindlinSphere
 
 from .half_plane import half_plane, loaded
 
@@ -28,8 +30,8 @@ def zone_of(push):
     fine = np.linspace(2 * x[0] - x[1], 2 * x[-1] - x[-2], 20 * CELLS + 21)
     hats = np.array([np.interp(fine, x, one, 0.0, 0.0) for one in np.eye(CELLS)]).T
     along = np.tile([1.0, 0.0], (1, len(fine), 1))
-    given = np.full(len(fine), 1 / LINE.modulus), np.full(CELLS, LINE.friction), np.ones(CELLS)
-    edge = stick_edge(Line(fine), hats, along, *given)
+    softness, friction = np.full(len(fine), 1 / LINE.modulus), np.full(CELLS, LINE.friction)
+    edge = stick_edge(Line(fine), hats, along, softness, friction)
     return edge.zone(states[7:], True), edge, LINE.stick_half_width(push)
 
 
@@ -53,9 +55,54 @@ def test_the_opening_grows_as_less_sticks():
     assert np.all(np.diff(found[1:-1]) > 0.0)
     half = edge.opening(np.full(CELLS, 0.5))
     # beside a punch: mean opening by mean pressure of a cell half of which is under it
-    np.testing.assert_allclose(
-        half, 4 / np.pi * np.sqrt(edge.spread[:, 0, 0]) / LINE.modulus, rtol=1e-12
-    )
+    np.testing.assert_allclose(half, np.sqrt(edge.spread[:, 0, 0]) / LINE.modulus, rtol=1e-12)
+
+
+def test_a_punch_may_end_inside_of_a_cell():
+    """requirement: with that opening as stiff as its closed form, wherever in a cell it ends.
+
+    Half-planes; the displacement ``2 F/(πE*) ln(2 far/c)`` of a flat punch of the half-width c is
+    counted from where that of a line load vanishes.
+    """
+    count, sub = 32, 20
+    x = np.arange(count) - (count - 1) / 2
+    fine = (np.arange((count + 1) * sub) + 0.5) / sub - (count + 1) / 2
+    hats = np.maximum(1 - np.abs(fine[:, None] - x), 0.0)
+    distance, far, step = np.subtract.outer(fine, fine), 4 * count, 1 / sub
+    upper, lower = distance + step / 2, distance - step / 2
+    line = upper * np.log(np.abs(upper) / far) - lower * np.log(np.abs(lower) / far) - step
+    compliance = -2 / np.pi * step * hats.T @ line @ hats
+    along, ones = np.tile([1.0, 0.0], (1, len(fine), 1)), np.ones(count)
+    edge = stick_edge(Line(fine), hats, along, np.ones(len(fine)), ones)
+    errors = []
+    for half_width in np.linspace(9.0, 11.0, 21):
+        part = np.clip(edge.sticking(half_width - np.abs(x), 1.0), 0.0, 1.0)
+        under = np.flatnonzero(part > 0.0)
+        opened = np.where(part < 1.0, edge.opening(part), 0.0)[under]
+        stiffness = np.linalg.solve(compliance[np.ix_(under, under)] + np.diag(opened), ones[under])
+        errors.append(2 * far * np.exp(-np.pi / (2 * stiffness.sum())) - half_width)
+    assert np.abs(errors).max() < 0.02
+    assert np.std(errors) < 0.005
+
+
+@pytest.mark.parametrize("beyond", [-0.3, 0.0, 0.3])
+def test_wear_holds_the_edge_back(beyond):
+    """requirement: a sphere's edge moves outwards as in a march by dimensionality reduction."""
+    steel = 2e11, 0.3
+    sphere = FrettingSphere(MindlinSphere(20.0, 0.01, (steel, steel), 0.6), 0.342e-6, 2e-13, 400)
+    first, *later = sphere.depths((1, 1700, 4647))
+    edge = sphere.contact(first).stick_radius
+    rise, width = 2 * sphere.modulus / (np.pi * 0.01) * np.sqrt(2 * edge), 0.05 * edge
+    place = edge - beyond * width
+    near = np.linspace(place - width, place + width, 2001)
+    hat = 1 - np.abs(near - place) / width
+    for depths in later:
+        state = sphere.contact(depths)
+        unheld = np.sqrt(0.01 * (state.approach - sphere.lift))
+        worn = np.trapezoid(np.interp(near, sphere.radius, depths) * hat, near) / width
+        ratio = worn / gap_beside(beyond, width, rise / sphere.modulus)
+        found = edge + held_back(unheld - edge, ratio)
+        assert found - edge == pytest.approx(state.stick_radius - edge, rel=0.1)
 
 
 @pytest.mark.parametrize("to", [np.pi, 2 * np.pi])

@@ -349,6 +349,31 @@ def test_a_stick_zone_that_changes_leaves_the_gap(blocks):
         np.testing.assert_allclose(again.pressure, worn.pressure, rtol=1e-5)
 
 
+def test_worn_depths_open_the_gap_where_they_slip():
+    """requirement: stick zones have the gap of their own depths, no volume is lost; depths of
+    neighbours are shared evenly where all slip alike, and lean to where more of it slips.
+    """
+    _, x, contact = block_contact(PlaneStrain(0.01), degree=2)
+    m = contact.basis.shape[1]
+    still = unloaded(contact)
+    part, slip = (np.arange(m) < 4) + 0.0, contact.areas[:, None] * np.ones((m, 1))
+
+    def opened(part, slip):
+        state = dataclasses.replace(still, part=part)
+        return contact.mass + contact.spared(state, dataclasses.replace(still, slip=slip))
+
+    inside = opened(part, slip)
+    np.testing.assert_allclose(inside.sum(axis=0), contact.areas, rtol=1e-12)
+    assert not (inside - np.diag(np.diag(inside)))[:4].any()
+    np.testing.assert_allclose(opened(0 * part, slip), contact.mass, rtol=1e-9, atol=1e-15)
+    places = contact.weighted.T @ x / contact.areas
+    leaning = opened(0 * part, slip * (places - x.min())[:, None])
+    np.testing.assert_allclose(leaning.sum(axis=0), contact.areas, rtol=1e-12)
+    moved = places @ (leaning - contact.mass) / contact.areas
+    assert moved.min() > -1e-9 * np.ptp(x)
+    assert np.median(moved) > 1e-3 * np.ptp(x) / m
+
+
 def test_pressing_a_ring():
     """requirement: axisymmetric without torsion; unlike bodies slip radially at the edges, which
     friction resists; no tangential motion of the holder.

@@ -55,7 +55,7 @@ class Growing:
 
 def state_of(worn):
     nothing, none = np.zeros(3), np.zeros((3, 1))
-    loads, edge = (none[0], none[0]), (nothing, nothing, nothing, nothing)
+    loads, edge = (none[0], none[0]), (nothing,) * 6
     return StickSlipState(nothing, none, none, *loads, nothing, none, nothing, worn, *edge)
 
 

@@ -20,7 +20,7 @@ from ..case.starter import solved
 from ..systems import built
 
 MU, FORCE, K = 0.4, 1000.0, 1e-14
-VOLUME = 0.07  # of those of the march
+VOLUME = 0.05  # of those of the march
 SIZES = {"size_x": "4 mm", "size_y": "4 mm", "height": "3 mm"}
 SIZES |= {"block_x": "8 mm", "block_y": "8 mm", "block_height": "4 mm"}
 STEEL = {"young_modulus": "200 GPa", "poisson_ratio": 0.3}

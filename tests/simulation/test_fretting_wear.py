@@ -199,9 +199,10 @@ def test_adaptive_jumps_where_the_middle_sticks():
 
 @pytest.mark.parametrize("push", [24.0, 26.0, 27.0])
 def test_the_end_of_partial_slip_and_its_estimate(push):
-    """requirement: pressure only where it sticks; the edge is found within a tenth of an element
-    wherever it lies in it, and the volume as far from the closed form of half-planes as the
-    estimate says.
+    """
+    requirement: pressure only where it sticks; the edge is found within a twentieth of an element
+    in all cycles, wherever it lies in it, and the volume as far from the closed form of half-planes
+    as the estimate says.
 
     On the stick zone, ``c² = a² (1 - Q/μP)`` as in the first cycle, the pressure is that of the
     unworn cylinder and a punch of the force Q/μ; where wear ends, faces just touch beyond it.
@@ -226,12 +227,11 @@ def test_the_end_of_partial_slip_and_its_estimate(push):
     error = summary["wear_volume_error_estimate_relative"]
     assert np.all(i.pressure[np.abs(i.x) > c + 1.5 * element] < 0.02 * i.pressure.max())
     assert summary["shape_error_estimate_relative"] >= error > abs(volume / known - 1.0)
-    assert abs(volume - known) < 0.08 * known
+    assert abs(volume - known) < 0.06 * known
     assert 0.02 < error < 0.2
     cycles = result.friction.cycles
     assert summary["stick_radius_m"] == cycles[-1].stick_radius
-    for row in (cycles[0], cycles[-1]):
-        assert abs(row.stick_radius - c) < 0.1 * element
+    assert all(abs(row.stick_radius - c) < 0.05 * element for row in cycles)
     assert volume == close(2e-12 / FRICTION * summary["dissipated_energy_J"], rel=1e-8)
 
 

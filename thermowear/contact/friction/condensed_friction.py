@@ -56,7 +56,7 @@ class CondensedFriction(FrictionalContact):
         gap = self.weighted.T @ self.gap + self.mass @ worn + state.spared
         compliance = self.compliance
         if lost is not None:
-            opened = self.mass + self.spared(state)
+            opened = self.mass + self.spared(state, guess)
             m, compliance, gap = len(worn), compliance.copy(), gap + opened @ lost
             compliance[:m, :m] += opened @ slope.dense
         given = loads.motions
@@ -78,9 +78,16 @@ class CondensedFriction(FrictionalContact):
             solution = solve_with_fallbacks(problem, closed)
         return self._state_after(state, solution, free, fixed)
 
-    def spared(self, state: StickSlipState) -> np.ndarray:
-        inward = np.where(state.part[:, None] > 0.0, self.mass, 0.0)
-        return np.diag(inward.sum(axis=0)) - inward
+    def spared(self, state: StickSlipState, after: StickSlipState) -> np.ndarray:
+        inside = state.part > 0.0
+        slip = after.not_sticking * np.linalg.norm(after.slip - state.slip, axis=1) / self.areas
+        slip[inside] = 0.0
+        among = np.where(inside, 2.0, slip + slip[:, None])
+        opened = np.where(inside[:, None], 0.0, self.mass) * among / 2
+        found = opened.sum(axis=0)
+        outside = ~inside & (found > 0.0)
+        opened[:, outside] *= self.areas[outside] / found[outside]
+        return opened + np.diag(self.areas - opened.sum(axis=0)) - self.mass
 
     def _state_after(self, state, solution: CoulombSolution, free, fixed) -> StickSlipState:
         """State at the end of the increment from a solution."""

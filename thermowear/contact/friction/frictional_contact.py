@@ -108,11 +108,12 @@ class FrictionalContact(PressureSpace):
             If no solution is found.
         """
 
-    def spared(self, state: StickSlipState) -> np.ndarray:
+    def spared(self, state: StickSlipState, after: StickSlipState) -> np.ndarray:
         """Weak gaps by worn depths beyond those of functions that overlap, shape (m, m) [m²].
 
         What is worn next to the stick zone would open the gap within it, so that its edge slips and
-        wears, and so on: there, depths open the gap of their own function alone.
+        wears, and so on. There, functions have the gap of their own depth alone; those outside
+        share what they lose between them.
         """
         return np.zeros((len(self.areas),) * 2)
 
@@ -154,5 +155,5 @@ def unloaded(
     worn = np.zeros((wearing, m if coefficients is None else coefficients))
     none = np.zeros(m)
     return StickSlipState(
-        none, shears, shears, still, still, free, points, np.zeros(n), worn, none, none, none, none
+        none, shears, shears, still, still, free, points, np.zeros(n), worn, *(none,) * 6
     )

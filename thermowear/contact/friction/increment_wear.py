@@ -80,6 +80,11 @@ class IncrementWear:
         """Depths worn off the bodies at the contact, shape (n_wearing, m) [m]."""
         return self.wear.depths(*self._wearing(pressure, last))
 
+    def unrelieved(self, after: StickSlipState) -> np.ndarray:
+        """Depth of both bodies if wear relieved no pressure across the stick edge, (m,) [m]."""
+        pressure = np.maximum(after.pressure - self.before.unsheared, 0.0)
+        return self.wear.depths(pressure, self._wearing(after.pressure, after)[1]).sum(axis=0)
+
     def rounding(self, pressure: np.ndarray) -> float:
         """Largest depth at the contact by a slip that is rounding [m]."""
         moved = max(np.abs(travel).max() for travel in (self.travel, self.travel_before))

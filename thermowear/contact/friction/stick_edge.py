@@ -8,12 +8,19 @@ A coefficient across the edge sticks in a part θ of its width. Mean pressure ti
 wear all of it until it carries nothing, the next one after it, and the zone would lose an element.
 But only the part outside slips and wears. It is unloaded when it is as deep as the opening next to
 a punch that ends at the edge. Of similar coefficients with the width h, that takes the mean depth
-``ε (λ - p*)``, ``ε = ε_0 (1 - θ)/θ``, so that its pressure is
+``ε (λ - p*)``, ``ε = h/E* (1 - θ)/θ``, so that its pressure is
 
-    λ - p* - X/ε,      X: mean depth worn since it sticks in a part.
+    λ - p* - X/ε,      X: mean depth worn since there is a stick zone.
 
 Where nothing sticks, ε is infinite, and the wear that of all of the coefficient. The shear is
 bounded by ``mu (λ - p*)``, with p* of the time at which wear begins there.
+
+Wear also holds the edge back. The more is worn, the closer the bodies come, and the edge moves
+outwards, over what is worn already. At the distance s beyond an edge with ``p* = K √s`` within, the
+gap of the smooth contact is ``4K s^(3/2)/3E*``, and slip and wear grow with this power, too: where
+ρ times this gap has been worn, the edge moves less by the factor 1 + ρ. If ρ grows in proportion to
+the way without wear, ``ln(1 + ρ)/ρ`` of the way is left. Close to the edge nothing relieves the
+pressure: ρ is that of a wear that does not.
 """
 
 from __future__ import annotations
@@ -21,6 +28,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
 import scipy.sparse as sp
@@ -30,11 +38,13 @@ from ..operators.pressure import Basis, scaled
 from ..search.contacts import Contacts
 from .stick_slip_state import Status, StickSlipState
 
-_END = 0.5
-"""End of a punch beyond the place of its last coefficient, by its width over the degree of the
-pressure."""
-_OPENING = 4 / np.pi
-"""ε_0 by the width over E*, measured against closed forms of punches on half-planes."""
+_Each = TypeVar("_Each", float, np.ndarray)
+
+_END = 0.55, 0.58
+"""End of a punch beyond the place of its last coefficient, by the width, in sections and in space.
+
+Measured: flat punches with this opening are then as stiff as their closed forms wherever within a
+coefficient they end, to 0.005 h (quadratic pressures to 0.05 h)."""
 _LEAST = 1e-3
 """Least part that sticks of a coefficient of which a part slips, and least part that slips."""
 _FITTED, _FEWEST = (12, 40), (4, 20)
@@ -42,7 +52,8 @@ _FITTED, _FEWEST = (12, 40), (4, 20)
 the least of them."""
 _NEAR = 14.0
 """Their largest distance, by the width."""
-_SMOOTHINGS = 2
+_SMOOTHINGS, _FITS = 4, 4
+"""Of p*, and of the quadratic function until its root is as smooth."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +64,8 @@ class StickZone:
     ----------
     part : ndarray, shape (m,)
         θ: 1 inside, 0 outside.
+    onset : ndarray, shape (m,)
+        Least part that stuck so far, before it is held back by wear.
     unsheared : ndarray, shape (m,)
         p* [Pa].
     edge : ndarray, shape (k, gdim)
@@ -62,6 +75,7 @@ class StickZone:
     """
 
     part: np.ndarray
+    onset: np.ndarray
     unsheared: np.ndarray
     edge: np.ndarray
     crossed: np.ndarray
@@ -84,8 +98,6 @@ class StickEdge:
     softness : ndarray, shape (m,)
         1/E* [1/Pa].
     friction : ndarray, shape (m,)
-    degrees : ndarray, shape (m,)
-        Polynomial degrees of the pressure.
     """
 
     places: np.ndarray
@@ -94,7 +106,10 @@ class StickEdge:
     means: sp.csr_array
     softness: np.ndarray
     friction: np.ndarray
-    degrees: np.ndarray
+
+    @property
+    def _end(self) -> float:
+        return _END[len(self.axes) - 1]
 
     @cached_property
     def _next(self) -> sp.csr_array:
@@ -108,11 +123,10 @@ class StickEdge:
     def after(self, cycle: Sequence[StickSlipState]) -> StickSlipState:
         """End of a cycle with its stick zone, from the states from its start to its end."""
         last, zone = cycle[-1], self.zone(cycle, True)
-        excess = np.where(zone.part > 0.0, last.excess, 0.0)
         crossed = (zone.part > 0.0) & (zone.part < 1.0)
-        found = np.where(crossed, zone.unsheared, 0.0)
-        unsheared = np.where(excess > 0.0, last.unsheared, found)
-        return replace(last, part=zone.part, excess=excess, unsheared=unsheared)
+        kept = cycle[0].crossed & (zone.part > 0.0)
+        unsheared = np.where(kept, last.unsheared, np.where(crossed, zone.unsheared, 0.0))
+        return replace(last, part=zone.part, onset=zone.onset, unsheared=unsheared)
 
     def zone(self, states: Sequence[StickSlipState], is_cycle: bool) -> StickZone:
         """Stick zone of the states from the start to the end of a cycle, or of one state."""
@@ -121,68 +135,78 @@ class StickEdge:
         whole = stuck & ((before == 0.0) | (before == 1.0))
         slips = np.any([state.pressure > 0.0 for state in states], axis=0) & ~stuck
         crossed = self._grown(slips) & self._grown(self._grown(whole)) & (slips | stuck)
+        onset, last = part.copy(), states[-1]
         edge: list[np.ndarray] = []
         cut: list[int] = []
-        for number, found in self._distances(np.flatnonzero(crossed), whole, unsheared**2):
-            within, outwards, width = found
-            inner = within / width + 1.0 - _END / self.degrees[number]
+        for number, found in self._distances(np.flatnonzero(crossed), whole, unsheared):
+            within, outwards, width, rise = found
+            inner = onset[number] = self.sticking(within, width)
+            if before.any():
+                onset[number] = min(inner, last.onset[number])
+                gap = gap_beside(onset[number] - 1.0 + self._end, width, rise)
+                way = held_back(inner - onset[number], last.unrelieved[number] / gap)
+                inner = max(onset[number] + way, min(inner, before[number]))
             if inner < 1.0 if stuck[number] else inner > 0.0:
-                edge.append(self.places[number] + within * outwards)
+                edge.append(
+                    self.places[number] + (inner - self.sticking(0.0, width)) * width * outwards
+                )
                 cut.append(number)
                 inner = np.clip(inner, _LEAST, 1.0 - _LEAST)
             part[number] = np.clip(inner, 0.0, 1.0)
         points = np.reshape(edge, (-1, self.places.shape[1]))
-        return StickZone(part, unsheared, points, np.array(cut, dtype=int))
+        return StickZone(part, onset, unsheared, points, np.array(cut, dtype=int))
 
     def _carried(
         self, states: Sequence[StickSlipState], is_cycle: bool
     ) -> tuple[np.ndarray, np.ndarray]:
         """Coefficients that stick in all states, and p* (m,) [Pa].
 
-        In a cycle shear that remains in the stick zone has no part in its slip: the range counts.
+        In a cycle, shear that remains in the stick zone has no part in its slip: any two states
+        bound p* by their mean pressure and half the difference of their shears.
         """
         moved = states[1:] if is_cycle else states
         stuck = np.all([state.status == Status.STICK for state in moved], axis=0)
         pressure = np.array([state.pressure for state in states])
         shear = np.array([state.shear for state in states])
         friction = np.where(self.friction > 0.0, self.friction, np.inf)
-        least = (pressure - np.linalg.norm(shear, axis=2) / friction).min(axis=0)
-        if is_cycle:
-            apart = [np.linalg.norm(shear - one, axis=2).max(axis=0) for one in shear]
-            least = np.maximum(least, pressure.min(axis=0) - np.max(apart, axis=0) / (2 * friction))
-        return stuck, np.maximum(least, 0.0)
+        others = zip(pressure, shear if is_cycle else -shear, strict=True)
+        least = [
+            (pressure + p) / 2 - np.linalg.norm(shear - t, axis=2) / (2 * friction)
+            for p, t in others
+        ]
+        return stuck, np.maximum(np.min(least, axis=(0, 1)), 0.0)
 
     def _distances(
-        self, numbers: np.ndarray, whole: np.ndarray, square: np.ndarray
-    ) -> Iterator[tuple[int, tuple[float, np.ndarray, float]]]:
+        self, numbers: np.ndarray, whole: np.ndarray, unsheared: np.ndarray
+    ) -> Iterator[tuple[int, tuple[float, np.ndarray, float, float]]]:
         """Coefficients, and what `_distance` tells of those of which it can.
 
-        From p*² of coefficients that stick wholly. Pressures alternate next to the edge, between
-        coefficients: they are smoothed there, if enough of them are left.
+        From p* of coefficients that stick wholly. It alternates next to the edge, between
+        coefficients: it is smoothed there, if enough of them are left.
         """
-        smooth, dim = sp.eye_array(len(square), format="csr"), len(self.axes) - 1
+        smooth, dim = sp.eye_array(len(whole), format="csr"), len(self.axes) - 1
         for _ in range(_SMOOTHINGS):
             deeper = whole & ~self._grown(~whole)
             if deeper.sum() < _FEWEST[dim]:
                 break
-            square, smooth, whole = self.means @ square, self.means @ smooth, deeper
+            smooth, unsheared, whole = self.means @ smooth, self.means @ unsheared, deeper
         inside = np.flatnonzero(whole)
         if len(inside) < _FEWEST[dim]:
             return
         tree = cKDTree(self.places[inside])
         nearest = tree.query(self.places[numbers], min(_FITTED[dim], len(inside)))[1]
         for number, near in zip(map(int, numbers), inside[nearest], strict=True):
-            found = self._distance(number, near, square, smooth)
+            found = self._distance(number, near, smooth, unsheared)
             if found is not None:
                 yield number, found
 
     def _distance(
-        self, number: int, near: np.ndarray, square: np.ndarray, smooth: sp.csr_array
-    ) -> tuple[float, np.ndarray, float] | None:
+        self, number: int, near: np.ndarray, smooth: sp.csr_array, unsheared: np.ndarray
+    ) -> tuple[float, np.ndarray, float, float] | None:
         """Distance of a coefficient from the edge, outward direction, and width across it.
 
-        From p*² of coefficients near it, smoothed as a quadratic function of the places is; None if
-        they are too few, or equal.
+        From p* of coefficients near it, the root of a quadratic function of the places, smoothed
+        as that is; None if they are too few, or equal.
         """
         size = np.sqrt(np.trace(self.spread[number]) / len(self.axes))
         at = (self.places - self.places[number]) @ self.axes[:, number].T / size
@@ -190,14 +214,29 @@ class StickEdge:
         columns = np.column_stack([np.ones(len(at)), at, (at**2).sum(axis=1) / 2])
         if len(near) <= columns.shape[1]:
             return None
-        value, *slopes, bend = np.linalg.lstsq(smooth[near] @ columns, square[near])[0]
+        means, square, fitted = smooth[near], unsheared[near] ** 2, np.zeros(columns.shape[1])
+        smoothed = means @ columns
+        for _ in range(_FITS):  # smoothing lowers the root
+            root = means @ np.sqrt(np.maximum(columns @ fitted, 0.0))
+            fitted = np.linalg.lstsq(smoothed, square + smoothed @ fitted - root**2)[0]
+        value, *slopes, bend = fitted
         slope = float(np.linalg.norm(slopes))
         if slope == 0.0:
             return None
         outwards = -np.array(slopes) / slope
         root = np.sqrt(max(slope**2 - 2 * bend * value, 0.0))
         width = np.sqrt(outwards @ self.spread[number] @ outwards)
-        return 2 * size * value / (slope + root), outwards @ self.axes[:, number], float(width)
+        within = 2 * size * value / (slope + root)
+        return (
+            within,
+            outwards @ self.axes[:, number],
+            float(width),
+            float(np.sqrt(root / size)) * self.softness[number],
+        )
+
+    def sticking(self, within: _Each, width: float) -> _Each:
+        """Part that sticks of coefficients so far within the edge, beyond 0 and 1 not crossed."""
+        return within / width + 1.0 - self._end
 
     def opening(self, part: np.ndarray) -> np.ndarray:
         """ε of coefficients that stick in these parts, infinite where nothing sticks, (m,) [m/Pa].
@@ -207,7 +246,7 @@ class StickEdge:
         size = np.sqrt(np.trace(self.spread, axis1=1, axis2=2) / len(self.axes))
         crossed = (part > 0.0) & (part < 1.0)
         slips = np.divide(1.0 - part, part, out=np.full(len(part), np.inf), where=crossed)
-        return _OPENING * size * self.softness * slips
+        return size * self.softness * slips
 
     def slip(self, mean: np.ndarray, pressure: np.ndarray, part: np.ndarray) -> np.ndarray:
         """Mean slips (m,) where coefficients stick in these parts, from those of all of them [m].
@@ -232,13 +271,34 @@ class StickEdge:
         return found
 
 
+def gap_beside(beyond: float, width: float, rise: float) -> float:
+    """Mean by a hat function of the gap beside the edge of a smooth contact [m].
+
+    Parameters
+    ----------
+    beyond : float
+        Distance of the edge beyond the place of the function, by its width.
+    width : float
+        [m]
+    rise : float
+        K/E*, with the pressure ``K √s`` at the distance s within the edge [1/√m].
+    """
+    reach = np.maximum([1.0 - beyond, -beyond, -1.0 - beyond], 0.0) ** 3.5
+    mean = 16 / 105 * float(reach @ [1.0, -2.0, 1.0])
+    return max(rise * width**1.5 * mean, np.finfo(float).tiny)
+
+
+def held_back(way: float, worn: float) -> float:
+    """Way of the edge if ρ times the gap beside it has been worn, from that without wear."""
+    return way * (float(np.log1p(worn)) / worn if worn > 0.0 else 1.0)
+
+
 def stick_edge(
     contacts: Contacts,
     basis: Basis,
     frame: np.ndarray,
     softness: np.ndarray,
     friction: np.ndarray,
-    degrees: np.ndarray,
 ) -> StickEdge:
     """Cells of the coefficients: a hat function stands for a cell of half its support.
 
@@ -253,8 +313,6 @@ def stick_edge(
         1/E* at the points [1/Pa].
     friction : ndarray, shape (m,)
         Coefficient of friction.
-    degrees : ndarray, shape (m,)
-        Polynomial degrees of the pressure.
     """
     weighted = sp.csr_array(scaled(contacts.weights, basis)).T.tocsr()
     areas = weighted.sum(axis=1)
@@ -267,7 +325,7 @@ def stick_edge(
     spread = np.zeros((len(places), len(frame), len(frame)))
     np.add.at(spread, of, 6 * entries.data[:, None, None] * at[:, :, None] * at[:, None, :])
     means = (mean @ sp.csr_array(basis)).tocsr()
-    return StickEdge(places, axes, spread, means, mean @ softness, friction, degrees)
+    return StickEdge(places, axes, spread, means, mean @ softness, friction)
 
 
 def radius_of(edge: np.ndarray, turns: bool) -> float:

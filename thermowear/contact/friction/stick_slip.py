@@ -83,11 +83,13 @@ def advance(
         slipped = after.slip - state.slip, after.point_slip - state.point_slip
         others = contact.lost(after.shear * ~state.crossed[:, None], *slipped)
         across = contact.basis @ by_slip.dissipated(after)
-        excess = state.excess + np.where(state.crossed, depths.sum(axis=0), 0.0)
-        after = replace(after, excess=excess, dissipated=state.dissipated + others + across)
+        after = replace(after, dissipated=state.dissipated + others + across)
     if state.part.any():
-        spared = state.spared + contact.spared(state) @ by_slip.at_contact(depths)
-        after = replace(after, spared=spared)
+        outside = state.part < 1.0
+        excess = state.excess + np.where(outside, depths.sum(axis=0), 0.0)
+        unrelieved = state.unrelieved + np.where(outside, by_slip.unrelieved(after), 0.0)
+        spared = state.spared + contact.spared(state, after) @ by_slip.at_contact(depths)
+        after = replace(after, excess=excess, unrelieved=unrelieved, spared=spared)
     worn = state.worn + by_slip.profiles(depths)
     lost = wear.repeats * (after.dissipated - state.dissipated)
     return replace(after, worn=worn, dissipated=state.dissipated + lost)

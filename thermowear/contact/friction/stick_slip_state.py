@@ -44,9 +44,11 @@ class StickSlipState:
         stick zones scatter about zero as the slip does.
     worn : ndarray, shape (n_wearing, m_Ψ)
         Coefficients of the worn profiles so far [m].
-    part, unsheared, excess : ndarray, shape (m,)
-        Part of each coefficient that stuck in the last cycle; of those of which a part slipped,
-        the pressure that bears no shear [Pa], and the depth worn since then [m], see `stick_edge`.
+    part, onset, unsheared, excess, unrelieved : ndarray, shape (m,)
+        Part of each coefficient that stuck in the last cycle, and the least one so far; of those
+        across the stick edge the pressure that bears no shear [Pa]; the depth worn since there is a
+        stick zone, outside of it, and what it were if wear relieved no pressure there [m]; see
+        `stick_edge`.
     spared : ndarray, shape (m,)
         Weak gap by wear next to stick zones, see `FrictionalContact.spared` [m³].
     iterations : int
@@ -63,8 +65,10 @@ class StickSlipState:
     dissipated: np.ndarray
     worn: np.ndarray
     part: np.ndarray
+    onset: np.ndarray
     unsheared: np.ndarray
     excess: np.ndarray
+    unrelieved: np.ndarray
     spared: np.ndarray
     iterations: int = 0
 

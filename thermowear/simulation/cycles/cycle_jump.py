@@ -184,8 +184,8 @@ class _TwoPartJump:
         worn = start.worn + _nonnegative(state.worn - self.excess - start.worn, cycles.areas)
         dissipated = state.dissipated - part * (whole.dissipated - state.dissipated)
         spared = state.spared - part * (whole.spared - state.spared)
-        crossed = start.crossed & whole.crossed & state.crossed
-        excess = state.excess - np.where(crossed, part * (whole.excess - state.excess), 0.0)
+        outside = np.all([one.part < 1.0 for one in (start, whole, state)], axis=0)
+        excess = state.excess - np.where(outside, part * (whole.excess - state.excess), 0.0)
         excess = np.maximum(excess, 0.0)
         settled = replace(state, worn=worn, spared=spared, excess=excess)
         found = cycles.equilibrium(self.end, settled)

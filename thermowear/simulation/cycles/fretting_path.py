@@ -89,8 +89,7 @@ class FrettingPath:
         self._turns = system.model.kinematics == "axisymmetric"
         if system.model.method == "condensed":  # tractions of points have no width
             soft = [softness(system.elastic, pairing) for pairing in contacts.each]
-            degrees = [system.model.pressure_degree(one) for one in system.model.interfaces]
-            given = np.concatenate(soft), self._friction, np.repeat(degrees, counts)
+            given = np.concatenate(soft), self._friction
             self._edge = stick_edge(contacts, self.basis, self.frame, *given)
         wear = JointWear(system.model, contacts)
         self._laws = tuple(wear.laws_of(counts).values())

@@ -80,10 +80,13 @@ class CondensedFriction(FrictionalContact):
 
     def spared(self, state: StickSlipState, after: StickSlipState) -> np.ndarray:
         inside = state.part > 0.0
+        if not inside.any():
+            return np.zeros_like(self.mass)
         slip = after.not_sticking * np.linalg.norm(after.slip - state.slip, axis=1) / self.areas
         slip[inside] = 0.0
-        among = np.where(inside, 2.0, slip + slip[:, None])
-        opened = np.where(inside[:, None], 0.0, self.mass) * among / 2
+        # the mean slip where two functions overlap weighs what one wears in the other
+        opened = np.where(inside[:, None], 0.0, self.mass)
+        opened *= np.where(inside, 1.0, (slip + slip[:, None]) / 2)
         found = opened.sum(axis=0)
         outside = ~inside & (found > 0.0)
         opened[:, outside] *= self.areas[outside] / found[outside]

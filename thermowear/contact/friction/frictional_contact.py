@@ -113,7 +113,7 @@ class FrictionalContact(PressureSpace):
 
         What is worn next to the stick zone would open the gap within it, so that its edge slips and
         wears, and so on. There, functions have the gap of their own depth alone; those outside
-        share what they lose between them.
+        share theirs as they slip.
         """
         return np.zeros((len(self.areas),) * 2)
 

@@ -53,7 +53,7 @@ the least of them."""
 _NEAR = 14.0
 """Their largest distance, by the width."""
 _SMOOTHINGS, _FITS = 4, 4
-"""Of p*, and of the quadratic function until its root is as smooth."""
+"""Smoothings of p*, and fits until the smoothed root of the quadratic function is that."""
 
 
 @dataclass(frozen=True)
@@ -147,9 +147,8 @@ class StickEdge:
                 way = held_back(inner - onset[number], last.unrelieved[number] / gap)
                 inner = max(onset[number] + way, min(inner, before[number]))
             if inner < 1.0 if stuck[number] else inner > 0.0:
-                edge.append(
-                    self.places[number] + (inner - self.sticking(0.0, width)) * width * outwards
-                )
+                away = (inner - self.sticking(0.0, width)) * width
+                edge.append(self.places[number] + away * outwards)
                 cut.append(number)
                 inner = np.clip(inner, _LEAST, 1.0 - _LEAST)
             part[number] = np.clip(inner, 0.0, 1.0)
@@ -203,7 +202,7 @@ class StickEdge:
     def _distance(
         self, number: int, near: np.ndarray, smooth: sp.csr_array, unsheared: np.ndarray
     ) -> tuple[float, np.ndarray, float, float] | None:
-        """Distance of a coefficient from the edge, outward direction, and width across it.
+        """Distance of a coefficient from the edge, outward direction, width across it, and K/E*.
 
         From p* of coefficients near it, the root of a quadratic function of the places, smoothed
         as that is; None if they are too few, or equal.
@@ -227,12 +226,8 @@ class StickEdge:
         root = np.sqrt(max(slope**2 - 2 * bend * value, 0.0))
         width = np.sqrt(outwards @ self.spread[number] @ outwards)
         within = 2 * size * value / (slope + root)
-        return (
-            within,
-            outwards @ self.axes[:, number],
-            float(width),
-            float(np.sqrt(root / size)) * self.softness[number],
-        )
+        rise = float(np.sqrt(root / size)) * self.softness[number]
+        return within, outwards @ self.axes[:, number], float(width), rise
 
     def sticking(self, within: _Each, width: float) -> _Each:
         """Part that sticks of coefficients so far within the edge, beyond 0 and 1 not crossed."""

@@ -112,7 +112,10 @@ def possible(case: tw.Case, results: Path, where: str) -> None:
         return
     given = case.force()
     if given is not None and case.load.history is None and case.load.lever is None:
-        assert summary["normal_force_N"] == pytest.approx(given, rel=1e-6), where
+        pressed, pressure = summary["normal_force_N"], summary["contact_force_N"]
+        curved = pressed < (1 - 1e-9) * pressure  # friction carries a part of the load there
+        share = curved * (summary["friction_force_N"] + case.contact.transverse_friction * pressure)
+        assert abs(pressed - given) <= share + 1e-6 * given, where
 
 
 def possible_contact(path: Path, numbers: dict, where: str) -> None:

@@ -34,6 +34,8 @@ def main(names: list[str]) -> int:
     if names and PAGE.exists():
         old = json.loads(PAGE.read_text(encoding="utf-8"))["checks"]
         found += [row for row in old if row["id"] not in names]
+        place = {row["id"]: number for number, row in enumerate(old)}
+        found.sort(key=lambda row: place.get(row["id"], len(old)))
     lines = ",\n".join(json.dumps(row, ensure_ascii=False) for row in found)
     PAGE.parent.mkdir(exist_ok=True)
     PAGE.write_text(

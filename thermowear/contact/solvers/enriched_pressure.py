@@ -66,10 +66,10 @@ class EnrichedContact:
         ComputationError
             If there is no solution.
         """
-        basis = dense(self._basis)
-        weighted = self.contacts.weights[:, None] * basis
-        compliance = self._compliance(basis) + weighted.T @ (self.local[:, None] * basis)
-        start = np.linalg.lstsq(basis, self.pressure, rcond=None)[0]
+        basis, weights = self._basis, self.contacts.weights
+        weighted = (sp.diags_array(weights) @ basis).tocsr()
+        compliance = self._compliance(basis) + _within(basis, self.local * weights)
+        start = _projection(weighted, basis)(self.pressure)
         force_modes = weighted.T @ self.holder.force_modes
         solution = solve_contact(
             compliance,
@@ -133,22 +133,26 @@ class EnrichedContact:
         each = zip(self.contacts.each, self.degrees, strict=True)
         return sp.csr_array(sp.block_diag([pressure_basis(*one) for one in each], format="csr"))
 
-    def _compliance(self, basis: np.ndarray) -> np.ndarray:
+    def _compliance(self, basis: sp.csr_array) -> np.ndarray:
         """Compliance of the enriched basis: elastic response to Ψ, local for the details."""
         influence, weights = self.influence, self.contacts.weights
-        weighted = dense(influence.weighted)
+        weighted, known_basis = sp.csr_array(influence.weighted), sp.csr_array(influence.basis)
         opened = influence.trace[influence.touching].T @ influence.near
         opened = sum_over_ranks(influence.comm, opened)
         known = weighted.T @ opened
         known = (known + known.T) / 2
-        details = basis - influence.basis @ influence.projected(basis)
+        levels = _projection(weighted, known_basis)(basis)
+        signs = _signs(basis)
         softness = self._softness(
-            details @ _signs(details),
+            basis @ signs - known_basis @ (levels @ signs),
             lambda values: values - opened @ np.linalg.solve(known, weighted.T @ values),
         )
-        mixed = (weights[:, None] * basis).T @ opened
-        local = (softness * weights)[:, None] * details
-        result = mixed @ np.linalg.solve(known, mixed.T) + details.T @ local
+        mixed = (sp.diags_array(weights) @ basis).T @ opened
+        result = mixed @ np.linalg.solve(known, mixed.T)
+        local = softness * weights  # of the details, basis - known_basis @ levels
+        crossed = (basis.T @ (sp.diags_array(local) @ known_basis)) @ levels
+        result += _within(basis, local) - crossed - crossed.T
+        result += levels.T @ _within(known_basis, local) @ levels
         return (result + result.T) / 2
 
     def _softness(
@@ -167,12 +171,17 @@ class EnrichedContact:
         return softness
 
 
+def _within(basis: sp.csr_array, values: np.ndarray) -> np.ndarray:
+    """Matrix Ψᵀ diag(values) Ψ, dense."""
+    return (basis.T @ (sp.diags_array(values) @ basis)).toarray()
+
+
 def _signs(basis: Basis) -> np.ndarray:
     """Random signs of the functions of a basis, the same each time."""
     return np.random.default_rng(0).choice([-1.0, 1.0], basis.shape[1])
 
 
-def _projection(weighted: Basis, basis: Basis) -> Callable[[np.ndarray], np.ndarray]:
+def _projection(weighted: Basis, basis: Basis) -> Callable[[Basis], np.ndarray]:
     """Coefficients of the L² projection of values at the points on a basis."""
     mass = linalg.splu(sp.csc_matrix(weighted.T @ basis))
-    return lambda values: mass.solve(weighted.T @ values)
+    return lambda values: mass.solve(dense(weighted.T @ values))

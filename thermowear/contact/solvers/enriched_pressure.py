@@ -69,7 +69,8 @@ class EnrichedContact:
         basis, weights = self._basis, self.contacts.weights
         weighted = (sp.diags_array(weights) @ basis).tocsr()
         compliance = self._compliance(basis) + _within(basis, self.local * weights)
-        start = _projection(weighted, basis)(self.pressure)
+        mass = dense(weighted.T @ basis)  # singular where a function has no points
+        start = np.linalg.lstsq(mass, weighted.T @ self.pressure)[0]
         force_modes = weighted.T @ self.holder.force_modes
         solution = solve_contact(
             compliance,
@@ -141,7 +142,7 @@ class EnrichedContact:
         opened = sum_over_ranks(influence.comm, opened)
         known = weighted.T @ opened
         known = (known + known.T) / 2
-        levels = _projection(weighted, known_basis)(basis)
+        levels = np.linalg.solve(influence.mass, dense(weighted.T @ basis))
         signs = _signs(basis)
         softness = self._softness(
             basis @ signs - known_basis @ (levels @ signs),
@@ -181,7 +182,7 @@ def _signs(basis: Basis) -> np.ndarray:
     return np.random.default_rng(0).choice([-1.0, 1.0], basis.shape[1])
 
 
-def _projection(weighted: Basis, basis: Basis) -> Callable[[Basis], np.ndarray]:
+def _projection(weighted: Basis, basis: Basis) -> Callable[[np.ndarray], np.ndarray]:
     """Coefficients of the L² projection of values at the points on a basis."""
     mass = linalg.splu(sp.csc_matrix(weighted.T @ basis))
-    return lambda values: mass.solve(dense(weighted.T @ values))
+    return lambda values: mass.solve(weighted.T @ values)

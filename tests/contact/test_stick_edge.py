@@ -1,8 +1,11 @@
 """Edge of the stick zone inside of coefficients."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from thermowear.contact.friction.frictional_contact import unloaded
 from thermowear.contact.friction.stick_edge import gap_beside, held_back, radius_of, stick_edge
 from thermowear.contact.friction.stick_slip import follow
 from thermowear.reference.elastic_contact.fretting_sphere import FrettingSphere
@@ -44,6 +47,23 @@ def test_the_edge_is_inside_of_a_cell(part):
     assert zone.part @ np.full(CELLS, width) == pytest.approx(2 * known, abs=0.3 * width)
     assert set(zone.part[zone.part > 0.0].round(12)) - {1.0}
     np.testing.assert_allclose(zone.part, zone.part[::-1], atol=1e-6)
+
+
+def test_the_pressure_that_bears_no_shear():
+    """requirement: at an instant what the shear leaves of the friction limit; in a cycle that of
+    the shear that swings, whatever remains, by the mean pressure if that drifts.
+    """
+    _, edge, _ = zone_of(0.4 * LINE.limit)
+    pressed = unloaded(half_plane(LINE, CELLS)[1])
+    pressure, swing = np.full(CELLS, 3e6), np.full((CELLS, 1), 0.8e6)
+
+    def state(factor, sign):
+        return replace(pressed, pressure=factor * pressure, shear=0.1e6 + sign * swing)
+
+    at_once = edge.zone([state(1.0, 1)], False).unsheared
+    np.testing.assert_allclose(at_once, 3e6 - 0.9e6 / LINE.friction, rtol=1e-12)
+    cycle = edge.zone([state(1.0, 1), state(1.1, -1)], True).unsheared
+    np.testing.assert_allclose(cycle, 1.05 * 3e6 - 0.8e6 / LINE.friction, rtol=1e-12)
 
 
 def test_the_opening_grows_as_less_sticks():

@@ -4,8 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
-from thermowear.contact.faces.face import Face
+from thermowear.contact.faces.face import Face, Surface
 from thermowear.contact.faces.projection import overhang, project, ray_intersections
 from thermowear.contact.search.refinement import rule
 
@@ -21,6 +22,34 @@ def chain(x, y):
 WALLS = chain([0.0, 1.0, 3.0, 4.0], [0.0, -0.5, -0.5, 0.0])
 """A groove with slanted walls."""
 DOWN = np.array([[0.0, -1.0]])
+
+
+def slanted_walls():
+    """The groove in space, of parallelograms with sharp corners, three facets long."""
+    ends = np.vstack([WALLS.nodes[:, 0], WALLS.nodes[-1:, 1]])
+    places = np.array([[(x, y, z + 1.5 * x) for z in range(4)] for x, y in ends])
+    numbers, parts = np.arange(16).reshape(4, 4), [slice(None, -1), slice(1, None)]
+    nodes, corners = (
+        np.stack([each[i, j] for i in parts for j in parts], axis=2) for each in (places, numbers)
+    )
+    owner = [np.zeros(9, dtype=int)] * 3
+    nodes, corners = nodes.reshape(9, 4, 3), corners.reshape(9, 4)
+    return Surface(nodes, np.ones(9), *owner, corners, kind="quadrilateral")
+
+
+def test_the_closest_point_of_a_groove():
+    """No point of any facet is closer, also where another one is along its skewed sides."""
+    walls = slanted_walls()
+    points = np.random.default_rng(7).uniform([-1, -1.2, -1], [5, 0.7, 9], (600, 3))
+    u = np.linspace(0.0, 1.0, 41)
+    everywhere = walls.points(*walls.on_each(np.array([(v, w) for v in u for w in u])))
+    sampled = cKDTree(everywhere).query(points)[0]
+    points, sampled = points[sampled < 0.5], sampled[sampled < 0.5]  # farther away they may be
+    facet, t, offset = project(walls, points)
+    distance = np.linalg.norm(offset, axis=1)
+    assert np.all(distance <= sampled + 1e-12)
+    assert np.all(distance >= sampled - 0.05)
+    assert walls.points(facet, t) == pytest.approx(points + offset, abs=1e-12)
 
 
 @pytest.mark.parametrize("height", [-0.8, -0.4, 0.0, 0.3])

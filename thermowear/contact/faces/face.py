@@ -40,8 +40,6 @@ _BLOCK_SIZE = 1_000_000
 """Number of pairs of a point and a facet of a chain processed at once."""
 _FACETS = {2: "interval", 3: "triangle", 4: "quadrilateral"}
 """Kind of a facet by its number of corners."""
-_FLATNESS_TOLERANCE = 1e-9
-"""Largest deviation of a facet treated as a parallelogram, relative to its shorter side."""
 _CANDIDATES = 4
 """Number of candidates for the closest facet to a point: the nearest in flat approximation."""
 
@@ -131,14 +129,6 @@ class Surface(FacetSet):
     def in_cell(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Parameters in the directions of the facet in its cell, shape (n, 2)."""
         return t
-
-    @cached_property
-    def flat(self) -> np.ndarray:
-        """True for plane facets with uniform tangents, shape (n_facets,)."""
-        every = np.arange(len(self.nodes))[:, None]
-        off = np.abs(self.flattened.points(every, lattice(self.order, self.kind)) - self.nodes)
-        shortest = np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
-        return off.max(axis=(1, 2)) < _FLATNESS_TOLERANCE * shortest
 
     @cached_property
     def middle_normals(self) -> np.ndarray:

@@ -17,6 +17,9 @@ from ...lagrange import corner_nodes, lattice, lobatto, on_lattice, order_of
 from .part_values import PartValues
 from .smooth_normals import across, corner_corrections, smooth_normals
 
+_FLATNESS_TOLERANCE = 1e-9
+"""Largest deviation of a facet treated as a parallelogram, relative to its shorter side."""
+
 
 @dataclass(frozen=True)
 class FlatFacets:
@@ -199,6 +202,17 @@ class FacetSet(ABC):
         t = self.inside(self.flattened.parameters(facet, points))
         return np.linalg.norm(self.flattened.points(facet, t) - points, axis=2)
 
+    def least_distances(self, facet: np.ndarray, points: np.ndarray) -> np.ndarray:
+        """Lower bounds of the distances of points (n, gdim) from facets (n, k), shape (n, k) [m].
+
+        That from the plane of a flat facet; zero, which excludes nothing, for a curved one.
+        """
+        from_origin = points[:, None] - self.flattened.origin[facet]
+        normal = across(self.flattened.sides)
+        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+        apart = np.abs(np.einsum("...i,...i->...", normal[facet], from_origin))
+        return np.where(self.flat[facet], apart, 0.0)
+
     def inside(self, t: np.ndarray) -> np.ndarray:
         """Parameters (..., dim) moved into the facet."""
         t = np.clip(t, 0.0, 1.0)
@@ -211,6 +225,15 @@ class FacetSet(ABC):
         """True for parameters (n, dim) on the edge of a facet."""
         outside = np.any((t <= 0.0) | (t >= 1.0), axis=1)
         return outside | (t.sum(axis=1) >= 1.0) if self.kind == "triangle" else outside
+
+    @cached_property
+    def flat(self) -> np.ndarray:
+        """True for straight or plane facets with uniform tangents, shape (n_facets,)."""
+        every = np.arange(len(self.nodes))[:, None]
+        t = lattice(self.order, self.kind).reshape(-1, self.dim)
+        off = np.abs(self.flattened.points(every, t) - self.nodes)
+        shortest = np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
+        return off.max(axis=(1, 2)) < _FLATNESS_TOLERANCE * shortest
 
     @property
     def corner_points(self) -> np.ndarray:

@@ -105,17 +105,26 @@ def _closest(face: FacetSet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray
         chosen = order[np.unique(point[order], return_index=True)[1]]
         return facet[chosen], t[chosen]
     facets = face.nearby(points)
-    starts = face.inside(face.flattened.parameters(facets, points[:, None]))
-    places = np.stack(
-        [
-            inside(face, points, facet, start)
-            for facet, start in zip(facets.T, starts.swapaxes(0, 1), strict=True)
-        ]
-    )
-    trials = zip(facets.T, places, strict=True)
-    distances = [np.linalg.norm(face.points(facet, t) - points, axis=1) for facet, t in trials]
-    best, every = np.argmin(distances, axis=0), np.arange(len(points))
-    return facets[every, best], places[best, every]
+    least = face.least_distances(facets, points) + _TOLERANCE * face.extent
+    every = np.arange(len(points))
+    best = facets[every, face.flat_distances(facets, points).argmin(axis=1)]
+    t, distance = _on_facets(face, points, best)
+    for candidate, bound in zip(facets.T, least.T, strict=True):
+        nearer = np.flatnonzero((candidate != best) & (bound < distance))
+        if len(nearer):
+            at, far = _on_facets(face, points[nearer], candidate[nearer])
+            closer = far < distance[nearer]
+            chosen = nearer[closer]
+            best[chosen], t[chosen] = candidate[chosen], at[closer]
+            distance[chosen] = far[closer]
+    return best, t
+
+
+def _on_facets(face: FacetSet, points: np.ndarray, facet: np.ndarray):
+    """Parameters (n, dim) of the closest points of given facets, and distances (n,) [m]."""
+    start = face.inside(face.flattened.parameters(facet, points))
+    t = inside(face, points, facet, start)
+    return t, np.linalg.norm(face.points(facet, t) - points, axis=1)
 
 
 def inside(face: FacetSet, points, facet: np.ndarray, start: np.ndarray) -> np.ndarray:

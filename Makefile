@@ -37,13 +37,13 @@ verification: ## the numbers of the verification book, docs/verification/checks.
 	$(ENV) python3 docs/extensions/write_checks.py
 
 test: ## the tests but the slow ones
-	$(PYTEST) -n 2 -m "not slow" --durations=20
+	$(PYTEST) -n 2 --dist worksteal -m "not slow" --durations=20
 
 verify: ## all tests, with the slow ones and random examples
-	HYPOTHESIS_PROFILE=explore $(PYTEST) -n 2
+	HYPOTHESIS_PROFILE=explore $(PYTEST) -n 2 --dist worksteal
 
 test-next: ## the tests with the dolfinx of Debian unstable
-	THERMOWEAR_SUITE=unstable $(PYTEST) -n 2 -m "not slow"
+	THERMOWEAR_SUITE=unstable $(PYTEST) -n 2 --dist worksteal -m "not slow"
 
 lint: $(RUFF) ## ruff, and shellcheck where it is installed
 	$(RUFF) check .

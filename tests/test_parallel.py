@@ -21,8 +21,8 @@ pytestmark = pytest.mark.skipif(shutil.which("mpirun") is None, reason="needs mp
 ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
-def thermowear(ranks, *arguments, module="thermowear"):
-    """Run the program, or another module, on some ranks."""
+def thermowear(ranks, *arguments, module="thermowear", timeout=300):
+    """Run the program, or another module, on some ranks, for some seconds at most."""
     command = [sys.executable, "-m", module, *map(str, arguments)]
     if ranks > 1:
         command = ["mpirun", "--oversubscribe", "-n", str(ranks), *command]
@@ -33,16 +33,16 @@ def thermowear(ranks, *arguments, module="thermowear"):
         text=True,
         check=False,
         env=environment | ROOT,
-        timeout=300,
+        timeout=timeout,
     )
 
 
-def same_on_two_ranks(module, folder, expected, *arguments, rtol=1e-8):
+def same_on_two_ranks(module, folder, expected, *arguments, rtol=1e-8, timeout=300):
     """Values by name that a module saves on each of two ranks, against serial ones.
 
     Differences are relative to the largest value of the same name.
     """
-    done = thermowear(2, *arguments, folder, module=module)
+    done = thermowear(2, *arguments, folder, module=module, timeout=timeout)
     assert done.returncode == 0, done.stderr
     for rank in (0, 1):
         parallel = np.load(folder / f"found_{rank}.npz")

@@ -103,7 +103,13 @@ def test_two_ranks(first, tmp_path):
     count = 1 if first == FIRST else _ON_RANKS
     known = computed(first, count, tmp_path / "known", exchanged=False)
     same_on_two_ranks(
-        "tests.simulation.invariance_on_ranks", tmp_path, known, first, count, rtol=MOVED
+        "tests.simulation.invariance_on_ranks",
+        tmp_path,
+        known,
+        first,
+        count,
+        rtol=MOVED,
+        timeout=300 * count,  # ranks that wait leave the core, and get it back late at load
     )
 
 

@@ -207,11 +207,9 @@ class FacetSet(ABC):
 
         That from the plane of a flat facet; zero, which excludes nothing, for a curved one.
         """
-        from_origin = points[:, None] - self.flattened.origin[facet]
-        normal = across(self.flattened.sides)
-        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-        apart = np.abs(np.einsum("...i,...i->...", normal[facet], from_origin))
-        return np.where(self.flat[facet], apart, 0.0)
+        points = points[:, None]
+        on_plane = self.flattened.points(facet, self.flattened.parameters(facet, points))
+        return np.where(self.flat[facet], np.linalg.norm(on_plane - points, axis=2), 0.0)
 
     def inside(self, t: np.ndarray) -> np.ndarray:
         """Parameters (..., dim) moved into the facet."""

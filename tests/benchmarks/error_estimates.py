@@ -5,7 +5,7 @@
 True errors are those against closed forms, or against the program's own converged values where
 there is none, in the norms of `thermowear.simulation.accuracy.error_estimate`. Asked for: at most
 three times the estimate in 90 % of the cases, nowhere above 10 times it. With --share each line has
-the part of the run that the estimate took.
+the part of the run that the estimate took, and the slowest runs are listed.
 """
 
 from __future__ import annotations
@@ -30,6 +30,9 @@ from thermowear.verification.quarter_meshes import crossed_cylinders, sphere_on_
 
 NEGLIGIBLE = 1e-4
 """Relative: what references are exact to; estimates and true errors below are not compared."""
+
+_SLOWEST = 10
+"""Number of the slowest runs listed."""
 
 SAME = 1e-9
 """Distance of points that are the same on two meshes [m]."""
@@ -72,10 +75,15 @@ class Study:
         return f"{self.starter} {' '.join(self.overrides[-3:])}"
 
     @property
+    def seconds(self) -> float:
+        """Time of the run; zero where it is not known."""
+        return sum(self.phases.seconds.values())
+
+    @property
     def share(self) -> float:
-        """Part of the time of the run that the estimate took; NaN where it is not known."""
-        seconds = self.phases.seconds
-        return seconds.get("error estimate", 0.0) / sum(seconds.values()) if seconds else np.nan
+        """Part of it that the estimate took."""
+        spent = self.phases.seconds.get("error estimate", 0.0)
+        return spent / self.seconds if self.seconds else np.nan
 
     def rows(self) -> list[tuple[str, float, float]]:
         """Quantity, true error and estimate."""
@@ -366,10 +374,9 @@ def _mesh(degree: int, elements: int) -> tuple[str, str]:
 def main(words: list[str]) -> None:
     share, ratios = "--share" in words, []
     words = [word for word in words if word != "--share"]
+    chosen = [study for study in studies() if all(word in study.name for word in words)]
     print(f"{'case':100} {'quantity':12} {'true':>9} {'estimate':>9} {'ratio':>6}")
-    for study in studies():
-        if not all(word in study.name for word in words):
-            continue
+    for study in chosen:
         for quantity, true, estimate in study.rows():
             compared = estimate is not None and max(true, estimate) > NEGLIGIBLE
             if compared:
@@ -383,6 +390,9 @@ def main(words: list[str]) -> None:
     near = np.count_nonzero(ratio < 3)
     print(f"{near} of {len(ratio)} true errors within 3 estimates ({near / len(ratio):.0%})")
     print(f"largest true error over its estimate: {ratio.max():.2f}, smallest {ratio.min():.2f}")
+    if share:
+        for study in sorted(chosen, key=lambda study: -study.seconds)[:_SLOWEST]:
+            print(f"{study.name[-100:]:100} {study.seconds:6.2f} s {study.share:5.0%}")
 
 
 if __name__ == "__main__":

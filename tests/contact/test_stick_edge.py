@@ -4,10 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 
 from thermowear.contact.friction.frictional_contact import unloaded
-from thermowear.contact.friction.stick_edge import gap_beside, held_back, radius_of, stick_edge
+from thermowear.contact.friction.stick_edge import (
+    StickEdge,
+    gap_beside,
+    held_back,
+    radius_of,
+    stick_edge,
+)
 from thermowear.contact.friction.stick_slip import follow
+from thermowear.contact.friction.stick_slip_state import Status
 from thermowear.reference.elastic_contact.fretting_sphere import FrettingSphere
 from thermowear.reference.elastic_contact.hertz import MindlinLine
 from thermowear.reference.elastic_contact.mindlin_sphere import MindlinSphere
@@ -47,6 +55,30 @@ def test_the_edge_is_inside_of_a_cell(part):
     assert zone.part @ np.full(CELLS, width) == pytest.approx(2 * known, abs=0.3 * width)
     assert set(zone.part[zone.part > 0.0].round(12)) - {1.0}
     np.testing.assert_allclose(zone.part, zone.part[::-1], atol=1e-6)
+
+
+def test_rounding_decides_nothing():
+    """requirement: of places on a grid, many of which are equally far, and an uneven pressure."""
+    side, rng = np.linspace(-2.4, 2.4, 49), np.random.default_rng(5)
+    grid = np.stack([*np.meshgrid(side, side), np.zeros((49, 49))], axis=2).reshape(-1, 3)
+    line = sp.diags_array([0.25, 0.5, 0.25], offsets=[-1, 0, 1], shape=(49, 49))
+    means, many, unit = sp.kron(line, line, format="csr"), len(grid), np.eye(3)[:2]
+    axes, spread = np.repeat(unit[:, None], many, axis=1), np.tile(0.01 * np.eye(2), (many, 1, 1))
+    radius = np.linalg.norm(grid, axis=1)
+    pressure = np.sqrt(np.maximum(4.8 - radius**2, 0.0))
+    unsheared = np.sqrt(np.maximum(2.8 - radius**2, 0.0)) * rng.uniform(0.9, 1.0, many)
+    status = np.where(unsheared > 0.0, Status.STICK, Status.SLIP)
+    pressed = unloaded(half_plane(LINE, CELLS)[1])
+    none, shear = np.zeros(many), 0.4 * (pressure - unsheared)[:, None] * (1.0, 0.0)
+    uneven = {"pressure": pressure, "shear": shear, "status": status}
+    state = replace(pressed, **uneven, part=none, onset=none)
+    zones = [
+        StickEdge(places, axes, spread, means, none + 1.0, none + 0.4).zone([state], False)
+        for places in (grid, *(grid + 1e-15 * rng.normal(size=(4, *grid.shape))))
+    ]
+    assert np.count_nonzero((zones[0].part > 0.0) & (zones[0].part < 1.0)) > 20
+    for zone in zones:
+        np.testing.assert_allclose(zone.part, zones[0].part, rtol=0.0, atol=1e-12)
 
 
 def test_the_pressure_that_bears_no_shear():

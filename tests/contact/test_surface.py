@@ -186,6 +186,22 @@ def test_initial_gap_is_open_where_positive(distance):
     np.testing.assert_allclose(pairing.gap, distance, rtol=1e-9)
 
 
+def wavy(p):
+    """A face that is level but for a few micrometres."""
+    return p + 1e-3 * (raised(p) - p)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_gaps_far_from_the_origin(order, cell_type):
+    """requirement: rounded as the coordinates are, a few times the last digit of 1 m."""
+    known = faces(OTHER, order, (wavy, wavy), cell_type)
+    away = (1.0, 0.7, -0.9)
+    one, other = (pair(*each, Spatial(), 4) for each in (known, [moved(f, away) for f in known]))
+    np.testing.assert_allclose(other.gap, one.gap, rtol=0.0, atol=7e-16)
+    np.testing.assert_allclose(other.points - away, one.points, rtol=0.0, atol=7e-16)
+
+
 def dome(p):
     """Curved facets on a sphere that touches the other face at its pole, of uneven sizes."""
     x, y, z = np.moveaxis(p, -1, 0)

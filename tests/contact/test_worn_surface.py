@@ -35,11 +35,3 @@ def test_a_plane_profile_is_moved_exactly(share):
         expected = 3.0 + (PLACES - share * moved) @ (2.0, -1.0)
         found = own.interpolation(np.array(slip)) @ profile
         np.testing.assert_allclose(found[INNER], expected[INNER], rtol=1e-12)
-
-
-def test_beyond_the_outline_the_nearest_values_hold():
-    """requirement: constant beyond the ends, as along a line."""
-    square = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]])
-    own = WornSurface(square, np.ones(4), 1.0)
-    hats = own.hats(np.array([[2.0, 0.25], [-1.0, -1.0], [0.25, 3.0]]))
-    np.testing.assert_allclose(hats @ square, [[1.0, 0.25], [0.0, 0.0], [0.25, 1.0]], atol=1e-12)

@@ -107,18 +107,19 @@ class FacetSet(ABC):
 
     def points(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Coordinates at parameters t of facets, shape (n, gdim) [m]."""
-        return (self.shape_functions(t)[0][:, None] @ self.nodes[facet])[:, 0]
+        from_first = self.shape_functions(t)[0][:, None] @ self._shape[facet]
+        return self.nodes[facet, 0] + from_first[:, 0]
 
     def tangents(self, facet: np.ndarray, t: np.ndarray) -> np.ndarray:
         """Derivatives of the coordinates along the parameters, shape (n, dim, gdim) [m]."""
-        return self.shape_functions(t, 1)[1:].swapaxes(0, 1) @ self.nodes[facet]
+        return self.shape_functions(t, 1)[1:].swapaxes(0, 1) @ self._shape[facet]
 
     def points_and_tangents(
         self, facet: np.ndarray, t: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Results of `points` and `tangents`."""
-        both = self.shape_functions(t, 1).swapaxes(0, 1) @ self.nodes[facet]
-        return both[:, 0], both[:, 1:]
+        both = self.shape_functions(t, 1).swapaxes(0, 1) @ self._shape[facet]
+        return self.nodes[facet, 0] + both[:, 0], both[:, 1:]
 
     def shape_functions(self, t: np.ndarray, derivatives: int = 0) -> np.ndarray:
         """Lagrange polynomials of the nodes and their derivatives, see `lagrange.on_lattice`."""
@@ -135,7 +136,7 @@ class FacetSet(ABC):
         Shapes (n, gdim) and (n, gdim - 1, gdim).
         """
         t = t.reshape(len(t), self.dim)
-        return smooth_normals(self.kind, self.nodes, self.outward, self._corrections, facet, t)
+        return smooth_normals(self.kind, self._shape, self.outward, self._corrections, facet, t)
 
     def softness_at(self, facet: np.ndarray) -> np.ndarray:
         """Softness at facets, shape (n,) [1/Pa]."""
@@ -193,8 +194,9 @@ class FacetSet(ABC):
         """Best affine fits to the corners of the facets."""
         t = lattice(1, self.kind).reshape(-1, self.dim)
         fit = np.linalg.pinv(np.column_stack([np.ones(len(t)), t]))
-        affine = np.einsum("kc,fci->fki", fit, self.corner_points)
-        return FlatFacets(affine[:, 0], affine[:, 1:], np.linalg.pinv(affine[:, 1:]).mT)
+        origin, corners = self.nodes[:, 0], self._shape[:, corner_nodes(self.order, self.kind)]
+        affine = np.einsum("kc,fci->fki", fit, corners)
+        return FlatFacets(origin + affine[:, 0], affine[:, 1:], np.linalg.pinv(affine[:, 1:]).mT)
 
     def flat_distances(self, facet: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Distances of points (n, gdim) from flattened facets (n, k), shape (n, k) [m]."""
@@ -244,8 +246,13 @@ class FacetSet(ABC):
         return float(np.ptp(self.nodes.reshape(-1, self.nodes.shape[-1]), axis=0).max())
 
     @cached_property
+    def _shape(self) -> np.ndarray:
+        """Nodes relative to the first one of each facet: rounding as small as the facet [m]."""
+        return self.nodes - self.nodes[:, :1]
+
+    @cached_property
     def _corrections(self) -> np.ndarray:
-        return corner_corrections(self.kind, self.nodes, self.outward, self.corner_numbers)
+        return corner_corrections(self.kind, self._shape, self.outward, self.corner_numbers)
 
 
 class FacetTable(NamedTuple):

@@ -50,6 +50,8 @@ _LEAST = 1e-3
 _FITTED, _FEWEST = (12, 40), (4, 20)
 """Number of coefficients that the quadratic function is fitted to, in sections and in space, and
 the least of them."""
+_EQUALLY_FAR = 1.0 + 1e-9
+"""All that are as far as the last of them, to this factor, belong to them: grids have many."""
 _NEAR = 14.0
 """Their largest distance, by the width."""
 _SMOOTHINGS, _FITS = 4, 4
@@ -193,9 +195,11 @@ class StickEdge:
         if len(inside) < _FEWEST[dim]:
             return
         tree = cKDTree(self.places[inside])
-        nearest = tree.query(self.places[numbers], min(_FITTED[dim], len(inside)))[1]
-        for number, near in zip(map(int, numbers), inside[nearest], strict=True):
-            found = self._distance(number, near, smooth, unsheared)
+        count = min(_FITTED[dim], len(inside))
+        farthest = tree.query(self.places[numbers], [count])[0][:, 0]
+        nearest = tree.query_ball_point(self.places[numbers], _EQUALLY_FAR * farthest)
+        for number, near in zip(map(int, numbers), nearest, strict=True):
+            found = self._distance(number, inside[near], smooth, unsheared)
             if found is not None:
                 yield number, found
 

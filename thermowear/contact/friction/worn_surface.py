@@ -1,7 +1,7 @@
 """Worn profile of a face in space, which slides along the face of the other body.
 
-The profile is piecewise linear on the triangulation of the places of its coefficients, in the plane
-across the mean normal of the face. Beyond its outline it is continued by the nearest values.
+The profile is interpolated between the places of its coefficients, in the plane across the mean
+normal of the face, see `plane_cells`. Beyond its outline it is continued by the nearest values.
 """
 
 from __future__ import annotations
@@ -10,16 +10,14 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.spatial import Delaunay
 
 from ...errors import CaseError
 from ..operators.tangential import middle_in_space
 from ..search.pairing import Pairing
+from .plane_cells import PlaneCells
 
 _FLATTEST = 0.1
 """Least cosine between the normals of a face and their mean."""
-_BLOCK = 2_000_000
-"""Pairs of a point and an edge of the outline that are compared at once."""
 
 
 @dataclass(frozen=True)
@@ -53,49 +51,15 @@ class WornSurface:
         shift = self.shift_per_slip * moved
         if not shift.any():
             return np.eye(len(self.places))
-        return self.hats(self.places - shift)
+        return self._cells.hats(self.places - shift)
 
     def wear_transfer(self, slip: np.ndarray) -> np.ndarray:
         """Coefficients of the profile from the depths worn at the contact, shape (m, m)."""
         return self.interpolation(slip).T * self.areas / self.areas[:, None]
 
-    def hats(self, points: np.ndarray) -> np.ndarray:
-        """Values of the hat functions of all places at points (n, 2), shape (n, m)."""
-        result = np.zeros((len(points), len(self.places)))
-        triangle = self._triangles.find_simplex(points)
-        inside = np.flatnonzero(triangle >= 0)
-        corners = self._triangles.simplices[triangle[inside]]
-        affine = self._triangles.transform[triangle[inside]]
-        first = np.einsum("nij,nj->ni", affine[:, :2], points[inside] - affine[:, 2])
-        weights = np.maximum(np.column_stack([first, 1 - first.sum(axis=1)]), 0.0)
-        result[inside[:, None], corners] = weights / weights.sum(axis=1, keepdims=True)
-        outside = np.flatnonzero(triangle < 0)
-        step = max(1, _BLOCK // len(self._outline))
-        for start in range(0, len(outside), step):
-            chosen = outside[start : start + step]
-            ends, part = self._nearest(points[chosen])
-            result[chosen, ends[:, 0]] += 1 - part
-            result[chosen, ends[:, 1]] += part
-        return result
-
     @cached_property
-    def _triangles(self) -> Delaunay:
-        return Delaunay(self.places)
-
-    @cached_property
-    def _outline(self) -> np.ndarray:
-        """Ends of the edges of the outline, shape (n_edges, 2)."""
-        return self._triangles.convex_hull
-
-    def _nearest(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Nearest edge of the outline to points (n, 2): its ends (n, 2), and the part along it."""
-        start, end = np.moveaxis(self.places[self._outline], 1, 0)
-        along = end - start
-        part = ((points[:, None] - start) * along).sum(axis=2) / (along**2).sum(axis=1)
-        part = np.clip(part, 0.0, 1.0)
-        off = points[:, None] - start - part[..., None] * along
-        nearest = (off**2).sum(axis=2).argmin(axis=1)
-        return self._outline[nearest], part[np.arange(len(points)), nearest]
+    def _cells(self) -> PlaneCells:
+        return PlaneCells(self.places)
 
 
 def worn_surface(pairing: Pairing, weighted, shift_per_slip: float) -> WornSurface:

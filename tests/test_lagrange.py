@@ -12,6 +12,7 @@ from thermowear.lagrange import (
     equispaced,
     gauss,
     lattice,
+    lebesgue,
     lobatto,
     neighbour_nodes,
     on_lattice,
@@ -32,6 +33,16 @@ def test_exact_to_its_degree_and_no_further(n):
 def test_one_point_is_refused():
     with pytest.raises(ValueError, match="two points"):
         lobatto(1)
+
+
+@pytest.mark.parametrize(
+    ("order", "kind", "known"),
+    [(1, "triangle", 1.0), (2, "interval", 1.25), (2, "triangle", 5 / 3), (3, "interval", 1.6311)]
+    + [(1, "quadrilateral", 1.0), (2, "quadrilateral", 1.25**2), (4, "interval", 2.2078)],
+)
+def test_polynomials_are_bounded_by_their_nodes(order, kind, known):
+    """requirement: at least Lebesgue's constant, at most a tenth more."""
+    assert known <= lebesgue(order, kind) <= 1.1 * known
 
 
 @pytest.mark.parametrize("n", range(1, 9))

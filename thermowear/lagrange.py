@@ -15,6 +15,9 @@ import numpy as np
 _ROUNDING = 1e-14
 """Rounding of tabulated shape functions, which are of the size of 1."""
 
+_SAMPLES, _BEYOND_SAMPLES = 40, 1.05
+"""Samples along a facet of sums of Lagrange polynomials, and a factor for those between them."""
+
 
 @cache
 def equispaced(kind: str, order: int):
@@ -108,6 +111,14 @@ def corner_nodes(order: int, kind: str = "interval") -> np.ndarray:
     """Numbers of the corners among the nodes of `lattice`, shape (n_corners,)."""
     corners, nodes = (lattice(n, kind) for n in (1, order))
     return matching(corners.reshape(len(corners), -1), nodes.reshape(len(nodes), -1))
+
+
+@cache
+def lebesgue(order: int, kind: str) -> float:
+    """Bound of polynomials on facets relative to their largest value at the nodes of `lattice`."""
+    return _BEYOND_SAMPLES * float(
+        np.abs(on_lattice(order, lattice(_SAMPLES, kind), 0, kind)).sum(-1).max()
+    )
 
 
 @cache

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from thermowear import CaseError
 from thermowear.bulk.kinematics import Spatial
@@ -14,6 +15,7 @@ from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.clipping import parts_opposite
 from thermowear.contact.search.contacts import Contacts
 from thermowear.contact.search.pairing import pair
+from thermowear.lagrange import lattice
 from thermowear.parallel import sum_over_ranks
 
 from ..bulk.fields import interpolated
@@ -200,6 +202,19 @@ def test_gaps_far_from_the_origin(order, cell_type):
     one, other = (pair(*each, Spatial(), 4) for each in (known, [moved(f, away) for f in known]))
     np.testing.assert_allclose(other.gap, one.gap, rtol=0.0, atol=7e-16)
     np.testing.assert_allclose(other.points - away, one.points, rtol=0.0, atol=7e-16)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("cell_type", CELLS)
+def test_no_place_of_a_curved_face_is_closer(order, cell_type):
+    """requirement: than the projection, of many sampled on all facets."""
+    upper, _ = faces(OTHER, order, (raised, raised), cell_type)
+    low, high = upper.nodes.reshape(-1, 3).min(axis=0), upper.nodes.reshape(-1, 3).max(axis=0)
+    points = np.random.default_rng(8).uniform(low - 4e-3, high + 4e-3, (500, 3))
+    steps = lattice(40, upper.kind).reshape(-1, 2)
+    sampled = cKDTree(upper.points(*upper.on_each(steps))).query(points)[0]
+    distance = np.linalg.norm(project(upper, points)[2], axis=1)
+    assert np.all(distance <= sampled + 1e-12)
 
 
 def dome(p):

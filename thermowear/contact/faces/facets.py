@@ -13,7 +13,7 @@ import numpy as np
 from ...bulk.body_mesh import BodyMesh
 from ...compat import geometry_dofmap
 from ...errors import CaseError
-from ...lagrange import corner_nodes, lattice, lobatto, on_lattice, order_of
+from ...lagrange import corner_nodes, lattice, lebesgue, lobatto, on_lattice, order_of
 from .part_values import PartValues
 from .smooth_normals import across, corner_corrections, smooth_normals
 
@@ -207,11 +207,11 @@ class FacetSet(ABC):
     def least_distances(self, facet: np.ndarray, points: np.ndarray) -> np.ndarray:
         """Lower bounds of the distances of points (n, gdim) from facets (n, k), shape (n, k) [m].
 
-        That from the plane of a flat facet; zero, which excludes nothing, for a curved one.
+        Distances from the planes of flattened facets, less the most that the facets leave them.
         """
         points = points[:, None]
         on_plane = self.flattened.points(facet, self.flattened.parameters(facet, points))
-        return np.where(self.flat[facet], np.linalg.norm(on_plane - points, axis=2), 0.0)
+        return np.linalg.norm(on_plane - points, axis=2) - self._off_plane[facet]
 
     def inside(self, t: np.ndarray) -> np.ndarray:
         """Parameters (..., dim) moved into the facet."""
@@ -234,6 +234,17 @@ class FacetSet(ABC):
         off = np.abs(self.flattened.points(every, t) - self.nodes)
         shortest = np.linalg.norm(self.flattened.sides, axis=2).min(axis=1)
         return off.max(axis=(1, 2)) < _FLATNESS_TOLERANCE * shortest
+
+    @cached_property
+    def _off_plane(self) -> np.ndarray:
+        """Bound of the distances of points of each facet from its flattened one, (n_facets,) [m].
+
+        That of its nodes, which the facet interpolates.
+        """
+        every = np.arange(len(self.nodes))[:, None]
+        on_plane = self.flattened.points(every, self.flattened.parameters(every, self.nodes))
+        off = np.linalg.norm(on_plane - self.nodes, axis=2).max(axis=1)
+        return lebesgue(self.order, self.kind) * off
 
     @property
     def corner_points(self) -> np.ndarray:

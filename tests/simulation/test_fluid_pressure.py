@@ -14,6 +14,8 @@ import ufl
 import thermowear as tw
 from thermowear.simulation.from_case import model_of
 from thermowear.simulation.system.building import build
+from thermowear.simulation.system.fluid import parted_by_fluid
+from thermowear.simulation.system.rigid_modes import fluid_pressure
 from thermowear.timer import Phases
 from thermowear.verification.cases.assembly import face_seal as seal
 
@@ -194,6 +196,17 @@ def test_a_load_that_falls_below_the_fluid():
     tables["analysis"] = {"type": "transient", "end_time": "10 s"}
     stopped = tw.run(tw.load(tables)).stopped
     assert "the fluid parts the faces: it presses with 125.3 N" in str(stopped)
+
+
+@pytest.mark.parametrize("left", [-1e-3, -1e-13, 0.0, 1e-13, 1e-3])
+def test_what_rounding_leaves_of_a_load_carries_nothing(left):
+    """requirement: the line of the fluid on both sides of the load that just parts the faces."""
+    system = build(model_of(tw.load(wet_seal("0.1 MPa"))), MPI.COMM_WORLD, Phases())
+    opening = system.holder.modes.T @ (
+        system.weights * fluid_pressure(system.model, system.contacts)
+    )
+    parted = parted_by_fluid(system, left * opening)
+    assert (parted is None) == (left == 1e-3)
 
 
 @pytest.mark.parametrize(

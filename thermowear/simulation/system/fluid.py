@@ -46,8 +46,10 @@ def parted_by_fluid(system: System, load: np.ndarray) -> ComputationError | None
     if pressure is None:
         return None
     modes, weights, model = system.holder.modes, system.weights, system.model
-    closing = load + modes.T @ (weights * pressure)
-    if not_carried(weights, modes, load) is None or not_carried(weights, modes, closing):
+    opening = modes.T @ (weights * pressure)
+    closing = load + opening
+    left = load - _NOTHING * opening  # what is left by rounding carries nothing
+    if not_carried(weights, modes, left) is None or not_carried(weights, modes, closing):
         return None
     forces = fluid_forces(system)
     opens = [

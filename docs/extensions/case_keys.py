@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 
-from thermowear.app.schema import all_tables
-from thermowear.app.schema.keys import Key, TableOfKeys
+from thermowear.app.schema import Key, TableOfKeys, all_tables
 
 _INTRODUCTION = """# Keys of case files
 

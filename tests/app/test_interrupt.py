@@ -224,7 +224,7 @@ def test_a_long_step_is_interrupted(tmp_path, long, number):
 import hashlib, sys
 from thermowear import interrupts
 from thermowear.app.cli import main
-from thermowear.simulation.time import time_loop
+from thermowear.simulation import time_loop
 interrupts._PATIENCE = 0.5
 def hanging(*_, **__):
     print("hangs", flush=True)

@@ -19,8 +19,11 @@ from pathlib import Path
 import numpy as np
 
 from thermowear.case import starters
-from thermowear.reference.elastic_contact.elliptical_contact import elliptical_contact
-from thermowear.reference.elastic_contact.hertz import contact_modulus, line_contact
+from thermowear.reference.elastic_contact.hertz import (
+    contact_modulus,
+    elliptical_contact,
+    line_contact,
+)
 from thermowear.results import Result
 from thermowear.simulation import run
 from thermowear.timer import Phases

@@ -50,8 +50,7 @@ import numpy as np
 from thermowear import geometry  # noqa: F401  (makes the geometries known)
 from thermowear.case import load
 from thermowear.geometry.mesh.nodes import reference_nodes
-from thermowear.reference.elastic_contact.elliptical_contact import elliptical_contact
-from thermowear.reference.elastic_contact.hertz import contact_modulus
+from thermowear.reference.elastic_contact.hertz import contact_modulus, elliptical_contact
 from thermowear.verification.check import run_starter
 from thermowear.verification.quarter_meshes import NAMES, MeshSizes, sphere_on_block, write_pair
 

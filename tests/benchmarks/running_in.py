@@ -14,12 +14,12 @@ from mpi4py import MPI
 import numpy as np
 
 import thermowear as tw
-from thermowear.bulk.direct_solver import DirectSolver
+from thermowear.bulk.solvers.direct import DirectSolver
 from thermowear.simulation.from_case import analysis_of, model_of
 from thermowear.simulation.interface.interface_problem import interface_problem
 from thermowear.simulation.interface.steady import steady_state
 from thermowear.simulation.system.building import build
-from thermowear.simulation.time.time_loop import moments
+from thermowear.simulation.time_loop import moments
 from thermowear.timer import Phases
 
 

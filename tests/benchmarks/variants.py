@@ -17,7 +17,7 @@ import numpy as np
 import thermowear as tw
 from thermowear.case import as_plain
 from thermowear.output.folder import ResultsFolder
-from thermowear.simulation.analyses.series import Series
+from thermowear.simulation.analyses.run import Series
 from thermowear.simulation.from_case import analysis_of, model_of
 from thermowear.timer import Phases
 

@@ -5,12 +5,12 @@ from mpi4py import MPI
 import numpy as np
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
-from thermowear.bulk.heat.passage import Passage
 from thermowear.bulk.kinematics import PlaneStrain
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.geometry.meshing.cells import Sheet, grid, mesh_body, tagged_bodies
-from thermowear.geometry.meshing.polar import Polar
+from thermowear.geometry.meshing.rings import Polar
 
 from .fields import empty_matrix
 

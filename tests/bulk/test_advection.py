@@ -8,9 +8,8 @@ from dolfinx.fem.petsc import assemble_vector
 
 from thermowear import load
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.field import as_function
-from thermowear.bulk.heat.passage import Passage
-from thermowear.bulk.spaces import lagrange_spaces
+from thermowear.bulk.heat.advection import Passage
+from thermowear.bulk.spaces import as_function, lagrange_spaces
 
 from ..conftest import DEMOS
 from .fields import interpolated, times
@@ -247,7 +246,7 @@ def test_bodies_that_stay_are_left_alone():
 
 def test_uniform_temperature_along_paths_needs_rows_of_cells():
     """requirement: an unstructured mesh is refused, rather than conducting across paths alone."""
-    from thermowear.bulk.heat.even_paths import EvenPaths
+    from thermowear.bulk.heat.paths import EvenPaths
     from thermowear.errors import CaseError
 
     from ..contact.solids import bent, gathered, straight, two_solids

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from thermowear.bulk.direct_solver import DirectSolver
+from thermowear.bulk.solvers.direct import DirectSolver
 from thermowear.errors import ComputationError
 
 
@@ -81,7 +81,7 @@ import subprocess
 import sys
 
 from petsc4py import PETSc
-from thermowear.bulk.direct_solver import DirectSolver
+from thermowear.bulk.solvers.direct import DirectSolver
 matrix = PETSc.Mat().createDense((24, 24), array=np.eye(24) + 1.0).convert("aij")
 print(abs(DirectSolver(matrix, "definite", {dim}).solve(np.full(24, 25.0)) - 1.0).max() < 1e-12)
 """

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.bulk.heat.passage import Passage
+from thermowear.bulk.heat.advection import Passage
 
 from .passing import COMM, INNER, OUTER, STEEL, conducting, largest, ring, strip, total, turning
 

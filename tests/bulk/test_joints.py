@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from thermowear.bulk.joints.conditions import conditions
-from thermowear.bulk.joints.joint import Border, Joint, Joints
+from thermowear.bulk.joints import Border, Joint, Joints, conditions
 from thermowear.bulk.spaces import groups_of
 
 COMM = MPI.COMM_SELF

@@ -8,8 +8,8 @@ import ufl
 from dolfinx import fem
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, PlaneStress, kinematics_of
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.case.tables.conditions import MotionTable
 from thermowear.contact.operators.rigid_motion import sliding

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Spatial
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.bulk.multigrid_solver import MultigridSolver
-from thermowear.bulk.solver_choice import SolverChoice
+from thermowear.bulk.solvers.choice import SolverChoice
+from thermowear.bulk.solvers.multigrid import MultigridSolver
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.geometry.mesh.held import free_motions
 

@@ -6,20 +6,25 @@ import numpy as np
 import pytest
 import ufl
 
-from thermowear.bulk import solver_choice
 from thermowear.bulk.bodies import distribute
 from thermowear.bulk.compiled import assembled_matrix
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.heat_equation import (
     ThermalMaterial,
     conduction,
     surface_heat,
     transferring,
 )
-from thermowear.bulk.heat.passage import Passage
 from thermowear.bulk.kinematics import Spatial
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.bulk.multigrid_solver import MultigridSolver
-from thermowear.bulk.solver_choice import SolverChoice, choose_solver, count_unknowns, factor_memory
+from thermowear.bulk.solvers import choice
+from thermowear.bulk.solvers.choice import (
+    SolverChoice,
+    choose_solver,
+    count_unknowns,
+    factor_memory,
+)
+from thermowear.bulk.solvers.multigrid import MultigridSolver
 from thermowear.bulk.spaces import block_diagonal, lagrange_spaces
 from thermowear.errors import ComputationError
 
@@ -135,14 +140,14 @@ def test_the_solver_is_chosen_by_memory_and_size(monkeypatch):
     assert choose_solver("auto", bodies, 2, True).name == "direct"
     assert choose_solver("multigrid", bodies, 2, False).iterative
     assert 1e8 < choose_solver("auto", bodies, 2, True).available < 1e14
-    monkeypatch.setattr(solver_choice, "_MANY", {"tetrahedron": 100, "hexahedron": 100})
+    monkeypatch.setattr(choice, "_MANY", {"tetrahedron": 100, "hexahedron": 100})
     assert choose_solver("auto", bodies, 2, True).iterative
     assert not choose_solver("auto", bodies, 2, False).iterative
     assert not choose_solver("direct", bodies, 2, True).iterative
-    monkeypatch.setattr(solver_choice, "available_memory", lambda: 1e6)
-    choice = choose_solver("auto", bodies, 2, False)
-    assert choice.iterative
-    assert "would not fit" in choice.note()
+    monkeypatch.setattr(choice, "available_memory", lambda: 1e6)
+    chosen = choose_solver("auto", bodies, 2, False)
+    assert chosen.iterative
+    assert "would not fit" in chosen.note()
     assert not choose_solver("direct", bodies, 2, False).iterative
 
 

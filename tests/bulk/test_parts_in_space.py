@@ -7,8 +7,8 @@ from mpi4py import MPI
 import numpy as np
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Spatial
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.geometry.meshing.cells import level, mesh_lattice, tagged_bodies
 
 COMM = MPI.COMM_WORLD

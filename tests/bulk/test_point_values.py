@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import Delaunay
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.points.point_values import located, point_rows
+from thermowear.bulk.points import located, point_rows
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.geometry.mesh.tagged import TaggedMesh
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.direct_solver import multiply
+from thermowear.bulk.elasticity.body import edge_smoothed_stiffness
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Spatial
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.bulk.mechanics.smoothed_stiffness import edge_smoothed_stiffness
+from thermowear.bulk.solvers.direct import multiply
 
 from ..contact.solids import COMM, bent, two_solids
 

@@ -12,7 +12,7 @@ import ufl
 from dolfinx import fem
 from dolfinx import mesh as dmesh
 
-from thermowear.bulk.mechanics.surplus import surplus_spaces
+from thermowear.bulk.elasticity.enriched import surplus_spaces
 from thermowear.bulk.spaces import lagrange_spaces
 
 MESHES = {

@@ -7,8 +7,8 @@ from mpi4py import MPI
 import numpy as np
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.points import transferred
 from thermowear.bulk.spaces import lagrange_spaces
-from thermowear.bulk.transfer import transferred
 from thermowear.verification.check import starter
 
 

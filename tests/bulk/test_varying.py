@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.heat.varying import thermal_forces, varying_conduction, varying_expansion
 from thermowear.bulk.kinematics import Axisymmetric
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.case.tables.tabulated import ExpansionTable, TemperatureTable
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.heat.advection import Passage, require_swept
 from thermowear.bulk.heat.heat_equation import conduction
-from thermowear.bulk.heat.passage import Passage
-from thermowear.bulk.heat.walls import require_swept
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.errors import CaseError

@@ -11,7 +11,7 @@ import thermowear as tw
 from thermowear.app.cli import main
 from thermowear.case import as_plain
 from thermowear.errors import CaseNote
-from thermowear.laws.time_course import LoadHistories
+from thermowear.laws.histories import LoadHistories
 
 from .bad import Bad, assert_refused
 from .starter import FRETTING, GONE, RUNNING_IN, tables

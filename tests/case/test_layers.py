@@ -5,7 +5,7 @@ import pytest
 from thermowear.case import as_plain, load
 from thermowear.errors import CaseError
 from thermowear.laws import PowerWear
-from thermowear.laws.layered_wear import LayeredWear
+from thermowear.laws.wear import LayeredWear
 from thermowear.simulation.from_case import model_of
 
 from .starter import changed, tables

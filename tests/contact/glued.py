@@ -10,12 +10,12 @@ from mpi4py import MPI
 import numpy as np
 
 from thermowear.bulk.bodies import Bodies, distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Kinematics, PlaneStrain, Spatial
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.faces.face import gather_faces
-from thermowear.contact.ties.joints import elastic_joints, glued_points, thermal_joints
+from thermowear.contact.ties import elastic_joints, glued_points, thermal_joints
 from thermowear.geometry.mesh.mixed import joined
 from thermowear.geometry.meshing.cells import (
     Sheet,

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from thermowear.contact.friction.condensed_friction import frictional_contact
+from thermowear.contact.friction.frictional_contact import frictional_contact
 from thermowear.contact.friction.stick_slip_state import Loads
-from thermowear.contact.operators.tangential import HeldMotion
+from thermowear.contact.operators.rigid_motion import HeldMotion
 from thermowear.laws.motions import translation
 
 PRESS = HeldMotion(translation((0.0, -1.0)), role="press")

@@ -9,15 +9,13 @@ from mpi4py import MPI
 import numpy as np
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Spatial
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.faces.face import gather_face
-from thermowear.contact.operators.condensation import condense
+from thermowear.contact.operators.condensation import condense, gap_trace
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
-from thermowear.contact.operators.traces import gap_trace
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
+from thermowear.contact.search.pairing import Contacts, pair
 from thermowear.geometry.meshing.cells import divided_hexahedra, mesh_lattice, tagged_bodies
 from thermowear.laws.motions import translation
 

@@ -5,17 +5,15 @@ from mpi4py import MPI
 import numpy as np
 import pytest
 
-from thermowear.bulk import column_blocks
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Axisymmetric
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.solvers import direct
 from thermowear.contact.faces.face import gather_face
-from thermowear.contact.operators.condensation import condense, influence
+from thermowear.contact.operators.condensation import condense, gap_trace, influence, vector_trace
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
-from thermowear.contact.operators.traces import gap_trace, vector_trace
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
+from thermowear.contact.search.pairing import Contacts, pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.laws.motions import translation
 from thermowear.parallel import sum_over_ranks
@@ -65,7 +63,7 @@ def test_compliance_is_the_bodies_own(degree, columns):
 def test_blocks_of_columns(monkeypatch):
     """requirement: the compliance is the same however many columns are solved for together."""
     _, _, _, whole = condensed(6, (3, 3))
-    monkeypatch.setattr(column_blocks, "_COLUMNS", {2: 4})
+    monkeypatch.setattr(direct, "_MOST_COLUMNS", {2: 4})
     _, _, _, parts = condensed(6, (3, 3))
     np.testing.assert_allclose(parts.compliance, whole.compliance, rtol=1e-12)
 

@@ -11,15 +11,13 @@ from thermowear import ComputationError
 from thermowear.contact.friction.coulomb import (
     CoulombProblem,
     CoulombSolution,
+    _by_lemke,
     jacobian,
     newton_step,
     residual,
-    violated,
-)
-from thermowear.contact.friction.coulomb_solver import (
-    _by_lemke,
     solve_by_newton,
     solve_with_fallbacks,
+    violated,
 )
 from thermowear.contact.solvers.signorini import solve_contact
 

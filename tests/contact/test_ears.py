@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.contact.search.ears import ears, without_folds
+from thermowear.contact.search.clipping import ears, without_folds
 
 
 def area(polygon):

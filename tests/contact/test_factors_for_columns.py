@@ -3,13 +3,11 @@
 import numpy as np
 
 from thermowear.bulk.kinematics import Spatial
-from thermowear.bulk.solver_choice import SolverChoice
-from thermowear.contact.operators.condensation import condense
+from thermowear.bulk.solvers.choice import SolverChoice
+from thermowear.contact.operators.condensation import condense, gap_trace
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
-from thermowear.contact.operators.traces import gap_trace
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
+from thermowear.contact.search.pairing import Contacts, pair
 from thermowear.laws.motions import translation
 
 from .solids import bent, elastic_bodies, gathered, two_solids

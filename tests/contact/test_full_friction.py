@@ -10,20 +10,17 @@ import pytest
 
 from thermowear import ComputationError
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.faces.face import gather_face
-from thermowear.contact.friction.condensed_friction import condense_tangential
-from thermowear.contact.friction.frictional_contact import unloaded
+from thermowear.contact.friction.frictional_contact import condense_tangential, unloaded
 from thermowear.contact.friction.stick_slip import FullSliding, advance, follow
 from thermowear.contact.friction.stick_slip_state import Status
-from thermowear.contact.full.full_friction import full_friction
+from thermowear.contact.full.full_friction import full_friction, projected
 from thermowear.contact.full.nitsche import default_penalty, nitsche_stiffness
-from thermowear.contact.full.point_friction import projected
 from thermowear.contact.operators.pressure import pressure_basis
-from thermowear.contact.operators.tangential import tangential_frame
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
+from thermowear.contact.operators.rigid_motion import tangential_frame
+from thermowear.contact.search.pairing import Contacts, pair
 from thermowear.parallel import sum_over_ranks
 
 from ..conftest import two_blocks

@@ -15,23 +15,21 @@ import pytest
 
 from thermowear import ComputationError
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import kinematics_of
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.faces.face import gather_face
 from thermowear.contact.full.edge_deflection import edge_deflection, wave_compliance
-from thermowear.contact.full.equations import Loading
-from thermowear.contact.full.full_system import FullContact, step_length
+from thermowear.contact.full.full_system import FullContact, Loading, step_length
 from thermowear.contact.full.nitsche import (
     default_penalty,
     nitsche_stiffness,
     normal_traction,
     thermal_traction,
 )
+from thermowear.contact.operators.condensation import gap_trace, value_trace, vector_trace
 from thermowear.contact.operators.pressure import pressure_basis
-from thermowear.contact.operators.traces import gap_trace, value_trace, vector_trace
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
+from thermowear.contact.search.pairing import Contacts, pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.parallel import sum_over_ranks
 

@@ -9,21 +9,19 @@ import sys
 import numpy as np
 import pytest
 
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Axisymmetric
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
-from thermowear.bulk.solver_choice import SolverChoice, choose_solver
+from thermowear.bulk.solvers.choice import SolverChoice, choose_solver
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.faces.face import gather_faces
 from thermowear.contact.full.full_system import FullContact
 from thermowear.contact.full.nitsche import default_penalty, nitsche_stiffness, normal_traction
-from thermowear.contact.operators.condensation import condense
+from thermowear.contact.operators.condensation import condense, gap_trace
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
-from thermowear.contact.operators.traces import gap_trace
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
+from thermowear.contact.search.pairing import Contacts, pair
 from thermowear.contact.solvers.signorini import solve_contact
-from thermowear.contact.ties.joints import glued_points, transferred
+from thermowear.contact.ties import glued_points, transferred
 from thermowear.errors import CaseError
 from thermowear.geometry.mesh.held import free_motions
 from thermowear.laws.motions import translation

@@ -7,28 +7,29 @@ import pytest
 import scipy.sparse as sp
 from scipy.optimize import brentq
 
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
+from thermowear.bulk.heat.advection import Passage
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction, surface_heat
-from thermowear.bulk.heat.passage import Passage
 from thermowear.bulk.heat.varying import varying_conduction
 from thermowear.bulk.kinematics import Axisymmetric, Spatial
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.faces.face import gather_faces
 from thermowear.contact.operators.condensation import (
     bath_matrix,
     condense_heat,
+    face_traces,
+    gap_trace,
     influence,
     pressure_loads,
+    value_trace,
 )
 from thermowear.contact.operators.coupled_heat import CoupledHeat
-from thermowear.contact.operators.heat import BaselineResponse
+from thermowear.contact.operators.exchange_matrix import BaselineResponse
 from thermowear.contact.operators.heat_exchange import FaceHeat
 from thermowear.contact.operators.pressure import joined_bases, pressure_basis
 from thermowear.contact.operators.thermal_opening import ThermalOpening, condense_distortion
-from thermowear.contact.operators.traces import face_traces, gap_trace, value_trace
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
-from thermowear.contact.ties.joints import elastic_joints, thermal_joints, transferred
+from thermowear.contact.search.pairing import Contacts, pair
+from thermowear.contact.ties import elastic_joints, thermal_joints, transferred
 from thermowear.parallel import sum_over_ranks
 
 from ..bulk.fields import empty_matrix, times

@@ -7,7 +7,7 @@ import pytest
 
 from thermowear.contact.friction.coulomb import CoulombProblem
 from thermowear.contact.friction.gross_slip import FullSliding, check_gross_slip
-from thermowear.contact.operators.tangential import HeldMotion
+from thermowear.contact.operators.rigid_motion import HeldMotion
 from thermowear.laws.motions import rotation, translation
 
 M, MU, PRESS = 400, 0.3, 1000.0

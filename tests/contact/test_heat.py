@@ -8,27 +8,27 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.faces.face import gather_face
 from thermowear.contact.operators.condensation import (
     bath_matrix,
     condense_heat,
+    gap_trace,
     influence,
     pressure_loads,
+    value_trace,
 )
 from thermowear.contact.operators.heat_exchange import FaceHeat, baseline_response
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
 from thermowear.contact.operators.thermal_opening import ThermalOpening, condense_distortion
-from thermowear.contact.operators.traces import gap_trace, value_trace
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
+from thermowear.contact.search.pairing import Contacts, pair
 from thermowear.laws.motions import translation
 from thermowear.parallel import sum_over_ranks
-from thermowear.reference import slabs
+from thermowear.reference.heat import contact_temperatures
 
 from ..conftest import two_blocks
 
@@ -74,7 +74,7 @@ def test_two_slabs(h, f, columns):
     _, pairing, _, _, face, resting = interface(3, columns, f)
     made = np.full(len(pairing.weights), 1e5)
     state = face.exchange(everywhere(pairing, h)).state(made, resting)
-    rises, fluxes = slabs.contact_temperatures((0.01, 0.02), (50.0, 15.0), (0, 0), 1e5, f, h)
+    rises, fluxes = contact_temperatures((0.01, 0.02), (50.0, 15.0), (0, 0), 1e5, f, h)
     for found, exact in zip((*state.rise, *state.flux), (*rises, *fluxes), strict=True):
         np.testing.assert_allclose(found, exact, rtol=1e-9, atol=1e-6)
     if (h, f) == (1e3, 0.5):
@@ -86,7 +86,7 @@ def test_given_end_temperatures():
     given = {"upper_end": 100.0, "lower_end": 20.0}
     _, pairing, conducting, _, face, resting = interface(2, (3, 2), given=given)
     state = face.exchange(everywhere(pairing, 5e3)).state(np.zeros(len(pairing.weights)), resting)
-    rises, fluxes = slabs.contact_temperatures((0.01, 0.02), (50.0, 15.0), (100, 20), 0.0, 0.5, 5e3)
+    rises, fluxes = contact_temperatures((0.01, 0.02), (50.0, 15.0), (100, 20), 0.0, 0.5, 5e3)
     np.testing.assert_allclose(state.rise[0], rises[0], rtol=1e-10)
     np.testing.assert_allclose(state.rise[1], rises[1], rtol=1e-10)
     np.testing.assert_allclose(state.flux[0], fluxes[0], rtol=1e-9)

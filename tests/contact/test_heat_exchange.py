@@ -11,12 +11,14 @@ from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, Spatial
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.faces.face import gather_face
-from thermowear.contact.operators.condensation import bath_matrix, condense_heat
-from thermowear.contact.operators.exchange_update import ReferenceExchange
-from thermowear.contact.operators.heat_exchange import FaceHeat, baseline_response
+from thermowear.contact.operators.condensation import bath_matrix, condense_heat, value_trace
+from thermowear.contact.operators.heat_exchange import (
+    FaceHeat,
+    ReferenceExchange,
+    baseline_response,
+)
 from thermowear.contact.operators.pressure import dense, pressure_basis
 from thermowear.contact.operators.thermal_opening import ThermalDistortion
-from thermowear.contact.operators.traces import value_trace
 from thermowear.contact.search.pairing import pair
 
 from ..conftest import two_blocks
@@ -138,7 +140,7 @@ def test_changed_exchange_equals_a_new_one(faces, monkeypatch, before, after, sy
     requirement: after a change of the conductance at some points temperatures and openings are
     those of an exchange made anew, to 1e-9; with one-sided responses as well.
     """
-    monkeypatch.setattr("thermowear.contact.operators.exchange_update._CHANGED", 1.0)
+    monkeypatch.setattr("thermowear.contact.operators.heat_exchange._CHANGED", 1.0)
     pairing, conducting, at_points = faces
     face = condense_heat(replace(conducting, symmetric=symmetric), FaceHeat(*at_points))
     x, made = pairing.points[:, 0], friction_heat(pairing)

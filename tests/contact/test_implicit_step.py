@@ -8,7 +8,7 @@ import pytest
 from thermowear.contact.wear.implicit_step import WearRates, newton_with_wear
 from thermowear.errors import ComputationError
 from thermowear.laws.distribution import Distribution
-from thermowear.laws.power_wear import PowerWear
+from thermowear.laws.wear import PowerWear
 
 STIFFNESS = np.array([1.0, 2.0])
 

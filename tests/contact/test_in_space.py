@@ -6,21 +6,25 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.heat.heat_equation import ThermalMaterial, conduction
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain, Spatial
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.faces.face import gather_face
-from thermowear.contact.operators.condensation import bath_matrix, condense, condense_heat
+from thermowear.contact.operators.condensation import (
+    bath_matrix,
+    condense,
+    condense_heat,
+    gap_trace,
+    value_trace,
+)
 from thermowear.contact.operators.heat_exchange import FaceHeat, baseline_response
 from thermowear.contact.operators.pressure import pressure_basis
 from thermowear.contact.operators.rigid_motion import RigidMode, hold
-from thermowear.contact.operators.traces import gap_trace, value_trace
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair, paired
+from thermowear.contact.search.pairing import Contacts, pair, paired
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.laws.motions import rotation, translation
-from thermowear.reference import slabs
+from thermowear.reference import heat
 
 from ..conftest import two_blocks
 from .solids import (
@@ -194,7 +198,7 @@ def test_two_slabs_with_friction_heat(h, divisions, place, cell_type):
     made = np.full(len(pairing.weights), 1e5)
     state = face.exchange(np.full(len(made), h)).state(made, resting)
     slab = HEIGHTS, (50.0, 15.0), (0.0, 0.0)
-    rises, fluxes = slabs.contact_temperatures(*slab, 1e5, 0.3, h)
+    rises, fluxes = heat.contact_temperatures(*slab, 1e5, 0.3, h)
     for found, exact in zip((*state.rise, *state.flux), (*rises, *fluxes), strict=True):
         np.testing.assert_allclose(found, exact, rtol=1e-9, atol=1e-6)
 

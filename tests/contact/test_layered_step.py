@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from thermowear.contact.wear.implicit_step import WearRates
-from thermowear.contact.wear.layered_step import LayeredStep
+from thermowear.contact.wear.implicit_step import LayeredStep, WearRates
 from thermowear.laws.distribution import InPlace, rings, uniform_track
-from thermowear.laws.layered_wear import LayeredWear
-from thermowear.laws.power_wear import PowerWear
+from thermowear.laws.wear import LayeredWear, PowerWear
 
 N, STEP, SPEED = 6, 4000.0, 0.1
 LAYERED = LayeredWear((2e-6,), (PowerWear(1e-14), PowerWear(9e-14)))

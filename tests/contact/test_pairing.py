@@ -15,10 +15,9 @@ from thermowear.bulk.kinematics import Axisymmetric, Spatial
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.faces.face import Face, gather_face
 from thermowear.contact.faces.projection import project
+from thermowear.contact.operators.condensation import gap_trace, value_trace
 from thermowear.contact.operators.pressure import contact_zones, pressure_basis
-from thermowear.contact.operators.traces import gap_trace, value_trace
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
+from thermowear.contact.search.pairing import Contacts, pair
 from thermowear.parallel import sum_over_ranks
 
 from ..bulk.fields import interpolated

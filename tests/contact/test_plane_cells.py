@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.contact.friction.plane_cells import PlaneCells
+from thermowear.contact.friction.worn_surface import PlaneCells
 
 X, Y = np.linspace(0.0, 4.0, 6) ** 1.2, np.linspace(-1.0, 1.0, 5)
 GRID = np.stack(np.meshgrid(X, Y), axis=2).reshape(-1, 2)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermowear.contact.faces.renumbered import renumbering
+from thermowear.contact.faces.face import renumbering
 from thermowear.contact.wear.worn_face import nodes_of
 
 from .solids import bent, gathered, straight

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.kinematics import Spatial
+from thermowear.contact.faces.facets import slenderness
 from thermowear.contact.faces.projection import project
-from thermowear.contact.faces.slender_facets import slenderness
 from thermowear.contact.search.pairing import pair
 
 from .solids import SIZE, gathered, two_solids

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.polynomial import polynomial
 
-from thermowear.contact.faces.smooth_normals import corner_corrections, smooth_normals
+from thermowear.contact.faces.normals import corner_corrections, smooth_normals
 from thermowear.lagrange import gauss
 
 ENDS = np.radians([-40.0, -22.0, -2.0, 11.0, 30.0])

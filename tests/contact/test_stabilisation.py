@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from thermowear import ComputationError
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial
 from thermowear.bulk.kinematics import kinematics_of
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial
 from thermowear.contact.full.full_system import FullContact
 from thermowear.contact.full.nitsche import (
     default_penalty,
@@ -14,8 +14,8 @@ from thermowear.contact.full.nitsche import (
     normal_traction,
     stability_limit,
 )
-from thermowear.contact.operators.traces import gap_trace
-from thermowear.contact.search.contacts import Contacts
+from thermowear.contact.operators.condensation import gap_trace
+from thermowear.contact.search.pairing import Contacts
 
 from .test_traction import MODELS, build, deformed_blocks
 

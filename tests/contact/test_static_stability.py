@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from thermowear.contact.solvers.static_stability import critical_factor
+from thermowear.contact.solvers.signorini import critical_factor
 
 ALL = np.ones(3, dtype=bool)
 PRESSED = np.ones((3, 1))

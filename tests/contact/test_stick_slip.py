@@ -12,18 +12,16 @@ import ufl
 
 from thermowear import ComputationError
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import Axisymmetric, PlaneStrain
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.faces.face import gather_face
 from thermowear.contact.friction import stick_slip
-from thermowear.contact.friction.condensed_friction import condense_tangential
-from thermowear.contact.friction.frictional_contact import unloaded
+from thermowear.contact.friction.frictional_contact import condense_tangential, unloaded
 from thermowear.contact.friction.slip_wear import SlipWear, WornProfile, WornProfiles
 from thermowear.contact.friction.stick_slip import FullSliding, advance, follow
 from thermowear.contact.friction.stick_slip_state import Status
 from thermowear.contact.operators.pressure import pressure_basis
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
+from thermowear.contact.search.pairing import Contacts, pair
 from thermowear.contact.solvers.signorini import solve_contact
 from thermowear.laws import PowerWear
 from thermowear.parallel import sum_over_ranks

@@ -10,11 +10,10 @@ from thermowear import CaseError
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.contact.faces.projection import project
+from thermowear.contact.operators.condensation import gap_trace, value_trace
 from thermowear.contact.operators.pressure import contact_zones, pressure_basis
-from thermowear.contact.operators.traces import gap_trace, value_trace
 from thermowear.contact.search.clipping import parts_opposite
-from thermowear.contact.search.contacts import Contacts
-from thermowear.contact.search.pairing import pair
+from thermowear.contact.search.pairing import Contacts, pair
 from thermowear.lagrange import lattice
 from thermowear.parallel import sum_over_ranks
 

@@ -9,7 +9,7 @@ from mpi4py import MPI
 import numpy as np
 import pytest
 
-from thermowear.contact.wear.swept_surface import swept_surface
+from thermowear.contact.wear.worn_profile import swept_surface
 from thermowear.errors import CaseError
 from thermowear.simulation.system.building import build
 from thermowear.timer import Phases

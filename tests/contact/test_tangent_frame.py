@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.contact.faces.tangent_frame import TangentFrame, frame_in_space
+from thermowear.contact.faces.normals import TangentFrame, frame_in_space
 
 DOWN = np.array([0.0, 0.0, -1.0])
 

@@ -9,7 +9,7 @@ import pytest
 from thermowear import ComputationError
 from thermowear.contact.solvers.coupled_positions import CoupledContacts, solve_coupled
 from thermowear.contact.solvers.signorini import solve_contact
-from thermowear.contact.wear.track import track
+from thermowear.contact.wear.worn_profile import track
 
 
 def close(value, rel=1e-6):

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import kinematics_of
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.contact.faces.face import gather_face
 from thermowear.contact.full.nitsche import (
     normal_traction,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermowear.contact.operators.pressure import unresolved_gap
-from thermowear.contact.search.contacts import Contacts
+from thermowear.contact.search.pairing import Contacts
 
 FACETS, DEGREE = 4, 3
 

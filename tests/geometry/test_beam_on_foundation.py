@@ -8,8 +8,8 @@ import ufl
 from dolfinx.mesh import meshtags
 
 from thermowear.bulk.bodies import distribute
+from thermowear.bulk.elasticity.elasticity import ElasticMaterial, elasticity
 from thermowear.bulk.kinematics import kinematics_of
-from thermowear.bulk.mechanics.elasticity import ElasticMaterial, elasticity
 from thermowear.case.tables.mesh import MeshTable
 from thermowear.geometry.geometries.beam_on_foundation import BeamOnFoundation
 

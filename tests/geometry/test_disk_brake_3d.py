@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from thermowear.bulk.bodies import distribute
-from thermowear.bulk.heat.even_paths import EvenPaths
-from thermowear.bulk.heat.passage import Passage
+from thermowear.bulk.heat.advection import Passage
+from thermowear.bulk.heat.paths import EvenPaths
 from thermowear.bulk.kinematics import Spatial
 from thermowear.bulk.spaces import lagrange_spaces
 from thermowear.case.tables.mesh import MeshTable

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.geometry.meshing.polar import Polar, complete, incomplete
+from thermowear.geometry.meshing.rings import Polar, complete, incomplete
 
 ARC = (-0.3, 0.7)
 R = 50e-3

@@ -10,8 +10,7 @@ import thermowear as tw
 from thermowear.bulk.mesh_motion import serial_extension
 from thermowear.errors import CaseError
 from thermowear.geometry.cad.design import Design
-from thermowear.geometry.cad.faceted import write_faceted
-from thermowear.geometry.cad.step import face_grid, write_prism, write_section
+from thermowear.geometry.cad.step import face_grid, write_faceted, write_prism, write_section
 from thermowear.geometry.cad.worn_body import moved_body, only_body
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.verification.spherical_pin import SphericalPin

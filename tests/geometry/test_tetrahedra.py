@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from thermowear.geometry.mesh.nodes import reference_nodes, shape_functions, slopes
-from thermowear.geometry.mesh.tetrahedra import scaled_jacobians
+from thermowear.geometry.mesh.tagged import scaled_jacobians_of_tetrahedra
 
 REGULAR = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)], dtype=float)
 
@@ -23,12 +23,14 @@ def cell(corners, order):
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_closed_forms(order):
     """A regular cell is 1, the corner of a cube √2/(1·√2·√3), a flat one is bad at any."""
-    assert scaled_jacobians(order, cell(REGULAR, order)[None]) == pytest.approx([1.0])
+    assert scaled_jacobians_of_tetrahedra(order, cell(REGULAR, order)[None]) == pytest.approx([1.0])
     path = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (1, 1, 1)]  # along edges of a cube
-    assert scaled_jacobians(order, cell(path, order)[None]) == pytest.approx([1 / math.sqrt(3)])
+    assert scaled_jacobians_of_tetrahedra(order, cell(path, order)[None]) == pytest.approx(
+        [1 / math.sqrt(3)]
+    )
     flat = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1e-3)])
     found = [
-        scaled_jacobians(order, cell(flat[list(turn)], order)[None])[0]
+        scaled_jacobians_of_tetrahedra(order, cell(flat[list(turn)], order)[None])[0]
         for turn in itertools.permutations(range(4))
     ]
     known = math.sqrt(2) * 1e-3 / (math.sqrt(2) * 1.0 * math.sqrt(1 + 1e-6))
@@ -38,7 +40,7 @@ def test_closed_forms(order):
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_inverted_cells_are_negative(order):
     nodes = cell(REGULAR, order) * (1, 1, -1)
-    assert scaled_jacobians(order, nodes[None]) == pytest.approx([-1.0])
+    assert scaled_jacobians_of_tetrahedra(order, nodes[None]) == pytest.approx([-1.0])
 
 
 def test_cells_inverted_between_the_samples():
@@ -52,7 +54,7 @@ def test_cells_inverted_between_the_samples():
     for shift in (0.2, 0.249, 0.251, 0.3):
         nodes = middle.copy()
         nodes[node, 0] += shift
-        found.append(scaled_jacobians(2, nodes[None])[0])
+        found.append(scaled_jacobians_of_tetrahedra(2, nodes[None])[0])
     assert np.all(np.diff(found) < 0.0)
     assert np.array_equal(np.array(found) > 0.0, [True, True, False, False])
 
@@ -66,7 +68,7 @@ def test_smallest_determinant_of_random_cells():
         np.linalg.det(np.einsum("qdk,cki->cqdi", slopes("tetrahedron", 2, places), nodes)).min(1)
         for places in (dense, reference_nodes("tetrahedron", 3))
     )
-    found = scaled_jacobians(2, nodes)
+    found = scaled_jacobians_of_tetrahedra(2, nodes)
     assert np.count_nonzero((sampled < 0.0) & (at_lattice > 0.0)) >= 3
     assert np.all(found[sampled < 0.0] <= 0.0)
     assert np.count_nonzero((found <= 0.0) & (sampled > 0.0)) < 200

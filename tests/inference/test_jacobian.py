@@ -7,7 +7,7 @@ from scipy import optimize
 from tests.inference.models import FunctionModel, depths
 from thermowear.errors import ComputationError
 from thermowear.inference import Parameter, ParameterSpace, central_jacobian, forward_jacobian
-from thermowear.inference.jacobian import distance_to_optimum, principal_directions
+from thermowear.inference.fit import distance_to_optimum, principal_directions
 
 SPACE = ParameterSpace((
     Parameter("k", 1e-3, 1e-6, 1.0, log=True),

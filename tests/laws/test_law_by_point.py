@@ -5,7 +5,7 @@ import pytest
 
 from thermowear.laws import InPlace, LocalState, PowerWear, steady_pressure, uniform_track
 from thermowear.laws.formulas import wear_rate
-from thermowear.laws.law_by_point import LawByPoint, law_by_point
+from thermowear.laws.wear import LawByPoint, law_by_point
 
 AT = np.array([0, 1, 1, 0, 2])
 POWERS = [PowerWear(2e-13), PowerWear(3e-13 * 1e6**-0.5, 1.5, 0.5), PowerWear(5e-14, 1.0, 2.0)]

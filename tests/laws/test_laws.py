@@ -8,17 +8,23 @@ import pytest
 from thermowear.case.values.units import expression
 from thermowear.errors import CaseError, ComputationError
 from thermowear.laws import LocalState, PowerWear
-from thermowear.laws.coefficients import (
+from thermowear.laws.formulas import (
+    FormulaLaw,
+    FormulaWear,
+    interface_law,
+    require_interface_law,
+    require_wear_rate,
+    wear_rate,
+)
+from thermowear.laws.interfaces import (
     Constant,
     Multiplied,
     Multipliers,
     PressureConductance,
     Table1D,
     harmonic_mean,
+    registered_laws,
 )
-from thermowear.laws.formulas import FormulaLaw, FormulaWear, interface_law, wear_rate
-from thermowear.laws.interfaces import registered_laws
-from thermowear.laws.plausible import require_interface_law, require_wear_rate
 
 P = np.array([1e5, 2e6, 7e6, 3e7])
 V = np.array([0.05, 0.2, 0.5, 1.0])

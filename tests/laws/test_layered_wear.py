@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.laws import LocalState, PowerWear
-from thermowear.laws.layered_wear import LayeredWear, layers_of
+from thermowear.laws.wear import LayeredWear, layers_of
 
 THICKNESS = (5e-6, 2e-6)
 LAWS = (PowerWear(2e-14), PowerWear(6e-17, 1.3), PowerWear(8e-13, 0.8, 0.5))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.laws.principle.least_worn import least_worn
+from thermowear.laws.principle.steady import least_worn
 
 
 @pytest.mark.parametrize("modes", [1, 2])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.case.values.units import expression
-from thermowear.laws.place import PLACE, PlaceFunction
+from thermowear.laws.formulas import PLACE, PlaceFunction
 
 POINTS = np.array([[3.0, 4.0, 1.0], [0.0, 2.0, 5.0]])
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.laws import PowerWear
-from thermowear.laws.principle.interior_point import solve
-from thermowear.laws.principle.rate_sums import PowerSum
+from thermowear.laws.principle.interior_point import PowerSum, solve
 
 from .random_problems import curved_face
 

@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
-from thermowear.laws.wave_modes import (
+from thermowear.laws.waves import (
+    WaveEquations,
+    WaveHeat,
+    WornBody,
     at_speed,
     first_critical,
     growing,
     lowest,
     with_wear,
 )
-from thermowear.laws.waves import WaveEquations, WaveHeat, WornBody
 
 
 def equations(gains=(1.0,), turning=0.0, wear=0.0, frames=(0.0,), worn_turning=0.0):

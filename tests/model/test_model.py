@@ -8,7 +8,7 @@ import pytest
 import thermowear as tw
 from thermowear.geometry.mesh.tagged import TaggedMesh
 from thermowear.laws import PowerWear
-from thermowear.laws.coefficients import Constant
+from thermowear.laws.interfaces import Constant
 from thermowear.model import (
     Body,
     Discretisation,

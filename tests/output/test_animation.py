@@ -11,9 +11,8 @@ from PIL import Image
 from thermowear import CaseError
 from thermowear.app.cli import main
 from thermowear.case.starters import starter_text
-from thermowear.output.pictures.animation import make
-from thermowear.output.pictures.animation.panels import SectionPanel, top
-from thermowear.output.pictures.animation.states import read_frames
+from thermowear.output.pictures import animation
+from thermowear.output.pictures.animation import SectionPanel, read_frames, top
 from thermowear.output.pictures.bodies import outline
 
 from ..conftest import COLD_RUNNING_IN
@@ -118,7 +117,7 @@ def test_singular_corners_do_not_flatten_the_rest():
     ("time", "text"), [(0.0, "0 s"), (0.0012345, "0.00123 s"), (12345.6, "12300 s")]
 )
 def test_times_in_words(time, text):
-    assert make.duration(time) == text
+    assert animation.duration(time) == text
 
 
 @pytest.mark.slow
@@ -173,14 +172,14 @@ def test_mp4_without_ffmpeg(folder, tmp_path, monkeypatch, capsys):
 def test_refusals(folder, tmp_path):
     """requirement: invalid endings and folders are reported with a remedy."""
     with pytest.raises(CaseError, match=r"\.gif or \.mp4"):
-        make.check_animation(folder, tmp_path / "frames.avi")
+        animation.check_animation(folder, tmp_path / "frames.avi")
     with pytest.raises(CaseError, match="no folder"):
-        make.check_animation(folder, tmp_path / "nowhere" / "frames.gif")
+        animation.check_animation(folder, tmp_path / "nowhere" / "frames.gif")
     with pytest.raises(CaseError, match=r"interface\.csv"):
-        make.check_animation(tmp_path, tmp_path / "frames.gif")
+        animation.check_animation(tmp_path, tmp_path / "frames.gif")
     (tmp_path / "interface.csv").touch()
     with pytest.raises(CaseError, match=r"analysis\.frames"):
-        make.check_animation(tmp_path, tmp_path / "frames.gif")
+        animation.check_animation(tmp_path, tmp_path / "frames.gif")
 
 
 @pytest.mark.parametrize("fps", ["0", "-1", "nan", "many", "1000"])

@@ -15,8 +15,7 @@ from thermowear.case.starters import starter_text, starters
 from thermowear.output import tables
 from thermowear.output.files import FRAMES, name_at, table_file
 from thermowear.output.frames import frame_files, keep_indexed
-from thermowear.output.pictures.animation.panels import SectionPanel, contact_curves
-from thermowear.output.pictures.animation.states import read_frames
+from thermowear.output.pictures.animation import SectionPanel, contact_curves, read_frames
 
 from ..slow import marked_slow
 from .test_end_to_end import HEADS

@@ -9,7 +9,7 @@ from thermowear.output import tables
 from thermowear.output.files import model_of
 from thermowear.output.pictures import bodies, panels
 from thermowear.output.pictures.bodies import BodySection
-from thermowear.output.report.shown_tables import shown_table
+from thermowear.output.report.contents import shown_table
 from thermowear.results import TABLES
 
 INTERFACE, PROFILE = (TABLES[name].columns for name in ("interface", "profile"))

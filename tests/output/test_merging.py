@@ -5,7 +5,7 @@ import pytest
 
 pyvista = pytest.importorskip("pyvista")
 
-from thermowear.output.pictures.in_space.merging import merged  # noqa: E402
+from thermowear.output.pictures.in_space.solids import merged  # noqa: E402
 
 
 def apart(shift=0.0):

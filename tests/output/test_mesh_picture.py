@@ -7,7 +7,7 @@ import pytest
 from thermowear.app.cli import main
 from thermowear.case.tables.mesh import MeshTable
 from thermowear.geometry.geometries.solids.cad_file import CadFile
-from thermowear.geometry.mesh.outside import outside
+from thermowear.geometry.mesh.mixed import outside
 
 from ..cad_parts import PAD, write_blocks
 from ..geometry.test_cad import KEYS

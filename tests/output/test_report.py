@@ -20,8 +20,8 @@ from thermowear.output import tables
 from thermowear.output.files import BY_CONTACT, PICTURES
 from thermowear.output.pictures.curves import draw_interface
 from thermowear.output.report import is_report
+from thermowear.output.report.contents import shown_table
 from thermowear.output.report.figures import key_figures
-from thermowear.output.report.shown_tables import shown_table
 from thermowear.results import TABLES
 
 from ..case.starter import FRETTING, HERTZ, RUNNING_IN, STEADY

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from thermowear.inference import SobolIndices, Swings
+from thermowear.output.study.folder import read_cells, write_sobol, write_tornado
 from thermowear.output.study.record import StudyRecord
-from thermowear.output.study.tables import read_cells, write_sobol, write_tornado
 
 
 def record(**tables):

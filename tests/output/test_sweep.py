@@ -11,8 +11,7 @@ import pytest
 
 from thermowear.errors import CaseError
 from thermowear.output.sweep import SweepFolder, draw_sweep, is_sweep, swept
-from thermowear.output.sweep.keys import axis
-from thermowear.output.sweep.layout import is_wide, lay_out, read_sweep
+from thermowear.output.sweep.layout import axis, is_wide, lay_out, read_sweep
 from thermowear.output.sweep.pictures import alike
 from thermowear.output.tables import write_points
 from thermowear.results import TABLES, InterfaceFields

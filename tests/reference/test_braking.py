@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from thermowear.reference.half_space import braking_peak, braking_rise
+from thermowear.reference.heat import braking_peak, braking_rise
 
 EFFUSIVITY, FLUX, STOP = 13400.0, 2e6, 4.0
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.reference.coated_bush import CoatedBush
+from thermowear.reference.coatings import CoatedBush
 
 BUSH = CoatedBush(10e-3, 20e-3, 60e-6, 10e-6, 1e-15, 1e-14, 500.0, 0.1)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from thermowear.reference.coated_face import CoatedBall, flat_face_depth
+from thermowear.reference.coatings import CoatedBall, flat_face_depth
 
 BALL = CoatedBall(radius=12e-3, thickness=3e-6, coating=2e-14, substrate=3e-13, force=20.0)
 

@@ -7,8 +7,11 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from thermowear.reference.elastic_contact.elliptical_contact import elliptical_contact
-from thermowear.reference.elastic_contact.hertz import line_contact, point_contact
+from thermowear.reference.elastic_contact.hertz import (
+    elliptical_contact,
+    line_contact,
+    point_contact,
+)
 
 MODULUS = 115e9
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import erfc
 
-from thermowear.reference.half_space import HalfSpace
+from thermowear.reference.heat import HalfSpace
 
 from .heated_slab import HeatedSlab
 

@@ -4,8 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from thermowear.reference.hot_spots import LayerBetweenHalfPlanes, WaveMaterial
-from thermowear.reference.instability import ConductorOnInsulator
+from thermowear.reference.instability import (
+    ConductorOnInsulator,
+    LayerBetweenHalfPlanes,
+    WaveMaterial,
+)
 
 DISK = WaveMaterial(125e9, 0.25, 12e-6, 54.0, 12.98e-6)
 PADS = WaveMaterial(0.53e9, 0.25, 30e-6, 0.5, 0.269e-6)

@@ -6,7 +6,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq, minimize_scalar
 from scipy.special import k0e
 
-from thermowear.reference.half_space import PEAKS, MovingBand
+from thermowear.reference.heat import PEAKS, MovingBand
 
 FLUX, HALF_WIDTH, CONDUCTIVITY, DIFFUSIVITY = 3e6, 0.8e-3, 45.0, 1.2e-5
 

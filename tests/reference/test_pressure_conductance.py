@@ -3,11 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.reference.slabs import (
-    conductance,
-    contact_temperatures,
-    harmonic_mean,
-)
+from thermowear.reference.heat import conductance, contact_temperatures, harmonic_mean
 
 LENGTHS, CONDUCTIVITIES, HARDNESSES = (0.01, 0.02), (50.0, 15.0), (2e9, 3e9)
 ENDS, COEFFICIENT, HEAT = (400.0, 300.0), 1.25e5, 1e5

@@ -7,8 +7,8 @@ import pytest
 from scipy.integrate import dblquad, quad
 from scipy.optimize import brentq
 
-from thermowear.reference import annular_punch, flat_face, guided_face
-from thermowear.reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
+from thermowear.reference import annular_punch, rigid_faces
+from thermowear.reference.rigid_faces import ArcBlock, DrumBrakeShoe, LeverBlock
 
 EXPONENTS = (0.3, 0.5, 1.0, 2.0, 4.0)
 
@@ -21,9 +21,9 @@ def test_tilted_face(b, arm):
     moment = arm * length * force
 
     def pressure(x):
-        return float(flat_face.tilted_pressure(x, force, moment, length, width, b))
+        return float(rigid_faces.tilted_pressure(x, force, moment, length, width, b))
 
-    zone = flat_face.contact_length(force, moment, length, b)
+    zone = rigid_faces.contact_length(force, moment, length, b)
     loaded = np.copysign(length / 2, moment)
     ends = sorted((loaded, loaded - np.copysign(zone, moment)))
     assert width * quad(pressure, *ends, epsabs=0, epsrel=1e-11, limit=200)[0] == pytest.approx(
@@ -32,7 +32,7 @@ def test_tilted_face(b, arm):
     turned = width * quad(lambda x: x * pressure(x), *ends, epsabs=1e-9, limit=200)[0]
     assert turned == pytest.approx(moment, rel=1e-7, abs=1e-7)
     x = np.linspace(*ends, 7)[1:-1]
-    rate = flat_face.tilted_pressure(x, force, moment, length, width, b) ** b
+    rate = rigid_faces.tilted_pressure(x, force, moment, length, width, b) ** b
     np.testing.assert_allclose(np.diff(rate, 2), 0.0, atol=1e-9 * rate.max())
     if zone < length:
         beyond = ends[0] - 1e-3 if moment > 0 else ends[1] + 1e-3
@@ -44,8 +44,8 @@ def test_linear_pressure_is_the_one_of_b_1():
     for arm in (0.0, 0.03, -0.16):
         data = (2e3, arm * 2e3 * 0.2, 0.2, 0.03)
         np.testing.assert_allclose(
-            flat_face.linear_pressure(x, *data),
-            flat_face.tilted_pressure(x, *data, 1.0),
+            rigid_faces.linear_pressure(x, *data),
+            rigid_faces.tilted_pressure(x, *data, 1.0),
             rtol=1e-10,
             atol=1.0,
         )
@@ -53,9 +53,9 @@ def test_linear_pressure_is_the_one_of_b_1():
 
 def test_tilting_punch_in_print():
     """requirement: the table of the rectangular punch, from its own closed form."""
-    for b, (constant, slope, *pressures) in flat_face.TILTING_PUNCH.items():
+    for b, (constant, slope, *pressures) in rigid_faces.TILTING_PUNCH.items():
         x = np.array([-0.03, 0.0, 0.03])
-        p = flat_face.tilted_pressure(x, 10e3, -10e3 * 5e-3, 0.06, 0.08, b) / 1e6
+        p = rigid_faces.tilted_pressure(x, 10e3, -10e3 * 5e-3, 0.06, 0.08, b) / 1e6
         np.testing.assert_allclose(p, [float(text) for text in pressures], atol=0.51e-6)
         assert p[1] ** b == pytest.approx(float(constant), abs=0.51e-6)
         assert 1 - (p[2] / p[1]) ** b == pytest.approx(float(slope), abs=0.51e-6)
@@ -63,9 +63,9 @@ def test_tilting_punch_in_print():
 
 def test_centred_punch():
     """requirement: Z p^b S, with p = F/S."""
-    p = flat_face.centred_pressure(1e4, 2e-3)
+    p = rigid_faces.centred_pressure(1e4, 2e-3)
     assert p == pytest.approx(5e6)
-    volume = flat_face.volume_rate(1e4, 2e-3, 3e-20, 2.0)
+    volume = rigid_faces.volume_rate(1e4, 2e-3, 3e-20, 2.0)
     assert volume == pytest.approx(3e-20 * p**2 * 2e-3, rel=1e-13, abs=0.0)
 
 
@@ -83,11 +83,11 @@ def test_arc_is_in_equilibrium(b, friction):
 
 
 def test_arcs_in_print():
-    force, size = guided_face.FORCE, (guided_face.RADIUS, guided_face.WIDTH)
-    for b, text in guided_face.SYMMETRIC.items():
+    force, size = rigid_faces.FORCE, (rigid_faces.RADIUS, rigid_faces.WIDTH)
+    for b, text in rigid_faces.SYMMETRIC.items():
         p = ArcBlock(*size, -0.5, 0.5, 0.77, b).pressure(0.0, force) / 1e6
         assert p == pytest.approx(float(text), abs=0.51e-6)
-    for sense, text in guided_face.ASYMMETRIC.items():
+    for sense, text in rigid_faces.ASYMMETRIC.items():
         p = ArcBlock(*size, -0.2, 0.7, sense * 0.3, 1.0).pressure(0.0, force) / 1e6
         assert p == pytest.approx(float(text), abs=0.51e-6)
     peak = ArcBlock(*size, -0.5, 0.5, 0.3).symmetric_peak(force) / 1e6
@@ -115,11 +115,11 @@ def test_lever_is_in_equilibrium(b, friction):
 
 
 def test_levers_in_print():
-    lever = guided_face.LEVER
-    for (b, sense), texts in guided_face.LEVER_ENDS.items():
+    lever = rigid_faces.LEVER
+    for (b, sense), texts in rigid_faces.LEVER_ENDS.items():
         face = replace(lever, b=b, friction=sense * lever.friction)
         for z, text in zip((lever.inner, lever.outer), texts, strict=True):
-            p = face.pressure(z, guided_face.LEVER_MOMENT)
+            p = face.pressure(z, rigid_faces.LEVER_MOMENT)
             digits = len(text.partition(".")[2])
             assert p / 1e6 == pytest.approx(float(text), abs=0.51 * 10.0**-digits)
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.linalg import solve_banded
 
-from thermowear.reference.half_space import HalfSpace, surface_rises
+from thermowear.reference.heat import HalfSpace, surface_rises
 
 STEEL, LINING = HalfSpace(50.0, 3.6e6), HalfSpace(0.9, 2.1e6)
 FLUX = 2e5

@@ -7,8 +7,7 @@ import pint
 import pytest
 
 import thermowear as tw
-from thermowear.laws.coefficients import Constant
-from thermowear.laws.interfaces import LocalState
+from thermowear.laws.interfaces import Constant, LocalState
 
 from ..case.starter import STEADY
 from .from_case import python_model

@@ -7,7 +7,7 @@ from functools import cached_property
 
 from thermowear.geometry.mesh.tagged import TaggedMesh
 from thermowear.laws import PowerWear
-from thermowear.laws.coefficients import Constant
+from thermowear.laws.interfaces import Constant
 from thermowear.model import (
     Body,
     Discretisation,

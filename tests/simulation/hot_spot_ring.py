@@ -12,7 +12,7 @@ from functools import cache, cached_property
 import numpy as np
 
 from thermowear.laws import PowerWear
-from thermowear.laws.coefficients import Constant
+from thermowear.laws.interfaces import Constant
 from thermowear.model import (
     Body,
     Discretisation,

@@ -7,7 +7,7 @@ from mpi4py import MPI
 import numpy as np
 import pytest
 
-from thermowear.contact.operators.heat import BaselineResponse
+from thermowear.contact.operators.exchange_matrix import BaselineResponse
 from thermowear.contact.solvers.enriched_pressure import EnrichedContact
 from thermowear.errors import ComputationError
 from thermowear.results.points import part_of

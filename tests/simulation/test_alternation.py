@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from thermowear.app.cli import main
+from thermowear.simulation import time_loop
 from thermowear.simulation.analyses import transient
-from thermowear.simulation.time import alternation
-from thermowear.simulation.time.alternation import STEPS, alternates
+from thermowear.simulation.time_loop import STEPS, alternates
 
 
 @pytest.mark.parametrize("period", [2, 4, 6])
@@ -35,7 +35,7 @@ def test_changes(areas):
 @pytest.mark.parametrize("turns", [0, 10**6])
 def test_a_run_tells_of_it(turns, monkeypatch, tmp_path, capsys):
     """requirement: a running-in with stored heat tells once that its contact area alternates."""
-    monkeypatch.setattr(alternation, "_TURNS", turns)
+    monkeypatch.setattr(time_loop, "_TURNS", turns)
     monkeypatch.setattr(transient, "STEPS", 5)
     command = ["run", "disk-brake-stop.toml", "-o", "r", "--no-pictures"]
     small = ("mesh.degree=2", 'analysis.end_time="0.1 s"', "analysis.output_times=[]")
@@ -43,4 +43,4 @@ def test_a_run_tells_of_it(turns, monkeypatch, tmp_path, capsys):
     assert main(["init", "disk-brake-stop"]) == 0
     assert main([*command, *(f"--set={change}" for change in small)]) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert said.count(" ".join(alternation.ALTERNATES.split())[:60]) == (turns == 0)
+    assert said.count(" ".join(time_loop.ALTERNATES.split())[:60]) == (turns == 0)

@@ -8,7 +8,7 @@ import pytest
 import thermowear as tw
 from thermowear.balances import errors_of, judged
 from thermowear.bulk.heat.conduction import Conduction
-from thermowear.contact.search.contacts import Contacts
+from thermowear.contact.search.pairing import Contacts
 from thermowear.output.report.figures import balances as shown
 from thermowear.simulation.system.system import System
 from thermowear.verification.cases.assembly.pad_disk_pad import Brake
@@ -133,7 +133,7 @@ def test_a_restart_goes_on_with_the_volumes(tmp_path):
     from mpi4py import MPI
 
     from thermowear.serialise import pack
-    from thermowear.simulation.interface.contact_solver import ContactSolution
+    from thermowear.simulation.interface.condensed_method import ContactSolution
     from thermowear.simulation.interface.sdirk import InterfaceState
 
     contact = ContactSolution(np.ones(3), np.zeros(1), None)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.simulation.results.cell_grids import GRIDS
+from thermowear.simulation.results.recording import GRIDS
 
 
 @pytest.mark.parametrize("n", [1, 2, 3, 6])

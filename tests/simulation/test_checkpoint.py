@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.contact.operators.heat import ThermalState
+from thermowear.contact.operators.exchange_matrix import ThermalState
 from thermowear.results import HistoryRow
 from thermowear.serialise import pack
 from thermowear.simulation import Observer

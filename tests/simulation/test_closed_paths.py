@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from thermowear.bulk.heat.path_solver import PathSolver
-from thermowear.bulk.multigrid_solver import MultigridSolver
+from thermowear.bulk.heat.paths import PathSolver
+from thermowear.bulk.solvers.multigrid import MultigridSolver
 
 from ..conftest import DEMOS
 from ..slow import marked_slow

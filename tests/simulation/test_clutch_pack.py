@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from thermowear.bulk.mechanics.elastic_group import ElasticGroup
+from thermowear.bulk.elasticity.elasticity import ElasticGroup
 from thermowear.case import load
 from thermowear.contact.operators import exchange_matrix
 from thermowear.verification.cases.assembly.clutch_pack import Pack, pack_checks

@@ -7,7 +7,7 @@ import functools
 import numpy as np
 import pytest
 
-from thermowear.reference.coated_bush import CoatedBush
+from thermowear.reference.coatings import CoatedBush
 
 from ..case.starter import solved
 from ..slow import marked_slow

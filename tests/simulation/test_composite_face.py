@@ -13,7 +13,7 @@ from thermowear.geometry.cad.design import write_table
 from thermowear.geometry.mesh.tagged import compact
 from thermowear.geometry.reading.export import write_mesh
 from thermowear.simulation import run
-from thermowear.simulation.analyses.design import steady_design
+from thermowear.simulation.analyses.static import steady_design
 from thermowear.simulation.runtime.observer import Observer
 from thermowear.verification.cases.wear.composite_face import (
     BORDER,

@@ -5,7 +5,7 @@ from math import inf, pi
 import numpy as np
 import pytest
 
-from thermowear.reference.slabs import contact_temperatures
+from thermowear.reference.heat import contact_temperatures
 
 from ..case.starter import GONE, solved
 

@@ -10,8 +10,13 @@ import pytest
 from thermowear.contact.friction.gross_slip import FullSliding
 from thermowear.contact.friction.stick_slip_state import StickSlipState
 from thermowear.errors import ComputationError
-from thermowear.simulation.cycles.cycle_jump import adaptive_jumps, fixed_jumps
-from thermowear.simulation.cycles.load_path import Increment, LoadSegment, RestartPoint
+from thermowear.simulation.cycles.load_path import (
+    Increment,
+    LoadSegment,
+    RestartPoint,
+    adaptive_jumps,
+    fixed_jumps,
+)
 
 RATES = np.array([[1.0, 3.0, 0.0]])
 AREAS = np.array([1.0, 2.0, 1.0])

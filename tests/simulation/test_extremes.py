@@ -11,7 +11,7 @@ from functools import cache
 import pytest
 
 import thermowear as tw
-from thermowear.reference import slabs
+from thermowear.reference import heat
 from thermowear.verification.check import starter
 
 ALLOWED = 1e-2
@@ -229,7 +229,7 @@ def known_slabs(
     made = friction * 5e6 * speed
     h = float("inf") if conductance is None else conductance
     ends = (hot - AMBIENT, 0.0)
-    rises, fluxes = slabs.contact_temperatures((0.01, 0.02), conductivity, ends, made, 0.5, h)
+    rises, fluxes = heat.contact_temperatures((0.01, 0.02), conductivity, ends, made, 0.5, h)
     names = ("rise 1", "rise 2", "flux 1", "flux 2")
     return dict(zip(names, (*rises, *fluxes), strict=True))
 

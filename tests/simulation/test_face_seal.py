@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from thermowear.case import load
-from thermowear.reference import heated_ring as reference
+from thermowear.reference import heat as reference
 from thermowear.verification.cases.assembly.face_seal import (
     AFTER,
     FORCE,

@@ -14,7 +14,7 @@ import ufl
 import thermowear as tw
 from thermowear.simulation.from_case import model_of
 from thermowear.simulation.system.building import build
-from thermowear.simulation.system.fluid import parted_by_fluid
+from thermowear.simulation.system.conditions import parted_by_fluid
 from thermowear.simulation.system.rigid_modes import fluid_pressure
 from thermowear.timer import Phases
 from thermowear.verification.cases.assembly import face_seal as seal

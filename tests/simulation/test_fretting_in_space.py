@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.contact.friction.condensed_friction import condense_tangential
+from thermowear.contact.friction.frictional_contact import condense_tangential
 from thermowear.contact.friction.stick_slip import FullSliding, follow
 from thermowear.contact.friction.stick_slip_state import Loads
-from thermowear.contact.operators.tangential import tangential_frame
+from thermowear.contact.operators.rigid_motion import tangential_frame
 from thermowear.geometry.geometries.rectangular_punch import RectangularPunch
 from thermowear.reference.elastic_contact.fretting_sphere import FrettingSphere
 from thermowear.reference.elastic_contact.mindlin_sphere import MindlinSphere

@@ -105,7 +105,7 @@ def test_no_method_overshoots_at_a_travelling_edge(method):
 
 def test_steps_end_where_the_edge_reaches_points(monkeypatch):
     """requirement: few tries are rejected, where error control alone rejects 4 of 10."""
-    from thermowear.simulation.time import time_loop as transient
+    from thermowear.simulation import time_loop as transient
 
     advance, tried = transient.advance_with_error, []
 

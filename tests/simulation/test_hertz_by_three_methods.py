@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from thermowear.reference.elastic_contact.elliptical_contact import elliptical_contact
+from thermowear.reference.elastic_contact.hertz import elliptical_contact
 from thermowear.verification.cases.contact.hertz import MODULUS
 from thermowear.verification.cases.contact.hertz_in_space import BALL, BLOCK, COARSE, FORCE, pressed
 from thermowear.verification.quarter_meshes import sphere_on_block

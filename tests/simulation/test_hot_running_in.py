@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from thermowear.contact.operators import thermal_opening
-from thermowear.laws.coefficients import Table1D
+from thermowear.laws.interfaces import Table1D
 from thermowear.simulation.heat import exchange_cache
 from thermowear.simulation.runtime.observer import Observer
 from thermowear.simulation.system.system import System
@@ -65,7 +65,7 @@ def test_exchange_of_large_faces(monkeypatch, conductance):
     """
     expected = running_in("quasi-steady", conductance)
     monkeypatch.setattr(exchange_cache, "_FEW", 0)
-    monkeypatch.setattr("thermowear.contact.operators.exchange_update._CHANGED", 1.0)
+    monkeypatch.setattr("thermowear.contact.operators.heat_exchange._CHANGED", 1.0)
     changed = exchange_cache.ExchangeCache._changed
     followed = []
 

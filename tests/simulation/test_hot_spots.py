@@ -9,13 +9,12 @@ import pytest
 
 from thermowear.case import load
 from thermowear.errors import CaseError, ComputationError, RunNote
-from thermowear.laws.wave_modes import first_critical
+from thermowear.laws.waves import first_critical
 from thermowear.model.analyses import StabilityAnalysis
 from thermowear.simulation import Observer
 from thermowear.simulation import run as run_case
-from thermowear.simulation.analyses.perturbation import PerturbedContact
 from thermowear.simulation.analyses.run import run
-from thermowear.simulation.analyses.stability import base_state
+from thermowear.simulation.analyses.stability import PerturbedContact, base_state
 from thermowear.simulation.from_case import model_of
 from thermowear.simulation.hot_spots.wave_model import WaveModel
 from thermowear.simulation.system.building import build

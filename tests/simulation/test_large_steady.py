@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.contact.operators import nodal_responses, thermal_opening
+from thermowear.contact.operators import exchange_matrix, thermal_opening
 from thermowear.contact.operators.coupled_heat import CoupledHeat
 from thermowear.errors import CaseError, ComputationError
-from thermowear.laws.coefficients import Multipliers, Table1D
+from thermowear.laws.interfaces import Multipliers, Table1D
 from thermowear.model import Discretisation, Heat, Motion, StaticAnalysis
 from thermowear.output.frames import write_fields
 from thermowear.simulation.analyses.run import run
@@ -157,7 +157,7 @@ def test_nothing_is_condensed(monkeypatch):
 
     monkeypatch.setattr(systems, "influence", refused)
     monkeypatch.setattr(thermal_system, "condense_heat", refused)
-    monkeypatch.setattr(nodal_responses, "blocks", refused)
+    monkeypatch.setattr(exchange_matrix, "blocks", refused)
     monkeypatch.setattr(thermal_opening, "blocks", refused)
     observer, meshes = Notes(), BlockMeshes(((9, 8, 2), (10, 7, 2)))
     meshes.tagged  # noqa: B018  # before memory is measured

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from thermowear.case.tables.tabulated import History
-from thermowear.laws.time_course import LoadHistories
+from thermowear.laws.histories import LoadHistories
 from thermowear.simulation.cycles.load_path import LoadPath
 
 

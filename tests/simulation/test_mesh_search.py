@@ -7,8 +7,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from thermowear.simulation.accuracy.compared_values import Number, WornHeights
-from thermowear.simulation.accuracy.mesh_search import MeshSearch, MeshTrial
+from thermowear.simulation.accuracy.mesh_search import MeshSearch, MeshTrial, Number, WornHeights
 
 LIMIT = 12
 

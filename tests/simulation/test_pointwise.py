@@ -7,7 +7,7 @@ import pytest
 
 from thermowear.contact.wear.implicit_step import Slope
 from thermowear.errors import CaseError
-from thermowear.reference.elastic_contact.elliptical_contact import elliptical_contact
+from thermowear.reference.elastic_contact.hertz import elliptical_contact
 from thermowear.simulation.interface.interface_problem import interface_problem
 from thermowear.simulation.system.conditions import ConditionModel
 from thermowear.verification.cases.contact.hertz import MODULUS

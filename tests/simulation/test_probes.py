@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.reference.slabs import contact_temperatures
+from thermowear.reference.heat import contact_temperatures
 
 from ..case.starter import solved
 from ..conftest import DEMOS

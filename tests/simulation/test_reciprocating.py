@@ -15,7 +15,7 @@ from thermowear.simulation import Observer
 from thermowear.simulation.cycles.reciprocating_problem import ReciprocatingProblem
 from thermowear.simulation.cycles.stroke import moved, positions
 from thermowear.simulation.from_case import analysis_of
-from thermowear.simulation.time.time_loop import moments
+from thermowear.simulation.time_loop import moments
 
 from ..case.starter import RECIPROCATING, solved, tables
 from ..systems import built

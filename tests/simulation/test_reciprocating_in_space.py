@@ -16,7 +16,7 @@ from thermowear.app.cli import main
 from thermowear.errors import CaseError
 from thermowear.geometry.meshing.cells import level, mesh_lattice, tagged_bodies
 from thermowear.laws import PowerWear
-from thermowear.laws.coefficients import Constant
+from thermowear.laws.interfaces import Constant
 from thermowear.model import (
     Body,
     Discretisation,

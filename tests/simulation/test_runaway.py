@@ -5,7 +5,7 @@ import tomli_w
 
 import thermowear as tw
 from thermowear.errors import ComputationError, StandstillError
-from thermowear.simulation.analyses.runaway import cause_of
+from thermowear.simulation.analyses.transient import cause_of
 
 from ..case.starter import STEADY, changed, tables
 from ..geometry.plain import NAMES, blocks, msh

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.reference.guided_face import DrumBrakeShoe
+from thermowear.reference.rigid_faces import DrumBrakeShoe
 
 from ..case.starter import changed
 from .space import BRAKE

@@ -10,9 +10,8 @@ import pytest
 import thermowear as tw
 from thermowear.errors import ComputationError
 from thermowear.simulation import Observer
-from thermowear.simulation.analyses.perturbation import PerturbedContact
 from thermowear.simulation.analyses.positioning import prepare
-from thermowear.simulation.analyses.stability import base_state
+from thermowear.simulation.analyses.stability import PerturbedContact, base_state
 from thermowear.simulation.from_case import model_of
 from thermowear.timer import Phases
 

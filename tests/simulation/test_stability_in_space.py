@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from thermowear.laws import PowerWear
-from thermowear.laws.coefficients import Constant
+from thermowear.laws.interfaces import Constant
 from thermowear.model import (
     Body,
     Discretisation,

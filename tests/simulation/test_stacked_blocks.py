@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from thermowear.reference.slabs import contact_temperatures
+from thermowear.reference.heat import contact_temperatures
 
 from ..case.starter import GONE, solved
 

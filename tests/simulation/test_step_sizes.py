@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from thermowear.model.analyses import TransientAnalysis
-from thermowear.simulation.time import time_loop
-from thermowear.simulation.time.time_loop import (
+from thermowear.simulation import time_loop
+from thermowear.simulation.time_loop import (
     AnySize,
     FewSizes,
     ends,

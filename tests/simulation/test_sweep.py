@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import thermowear as tw
-from thermowear.bulk.direct_solver import DirectSolver
-from thermowear.simulation.analyses.series import Series, groups
+from thermowear.bulk.solvers.direct import DirectSolver
+from thermowear.simulation.analyses.run import Series, groups
 from thermowear.simulation.from_case import analysis_of, model_of
 from thermowear.simulation.system.setup_cache import inputs
 

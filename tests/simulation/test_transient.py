@@ -8,9 +8,9 @@ import pytest
 
 import thermowear as tw
 from thermowear.reference import annular_punch as reference
+from thermowear.simulation import time_loop as transient
 from thermowear.simulation.interface.sdirk import TrialStep
-from thermowear.simulation.time import time_loop as transient
-from thermowear.simulation.time.time_loop import next_step
+from thermowear.simulation.time_loop import next_step
 
 from ..conftest import COLD_RUNNING_IN, HOT, cold_tables, wear_law
 from ..systems import built

@@ -9,7 +9,7 @@ import pytest
 
 from thermowear.contact.operators.rigid_motion import sliding
 from thermowear.laws import PowerWear
-from thermowear.laws.coefficients import Constant
+from thermowear.laws.interfaces import Constant
 from thermowear.model import (
     Body,
     Discretisation,

@@ -1,13 +1,17 @@
-"""Commands on a case file: starters, checks, meshes, worn shapes."""
+"""Commands beside run and the batches: starters, checks, meshes, schema, pictures, verification."""
 
 from __future__ import annotations
 
+import json
 import os
+import sys
+import warnings
 from pathlib import Path
 
 from .. import load
 from ..case.tables.schema import Case
-from ..errors import CaseError
+from ..errors import CaseError, ComputationError, RunNote
+from .arguments import parser
 
 
 def cases(_) -> int:
@@ -128,3 +132,113 @@ def check_absent(path: Path, overwrite: bool) -> None:
     """
     if os.path.exists(path) and not overwrite:  # Path.exists raises an error for invalid names
         raise CaseError(f"{path}: exists; use --overwrite or another name")
+
+
+def plot(chosen) -> int:
+    """Draw the pictures of a results folder again."""
+    from ..output.calibration import draw_calibration, is_calibration
+    from ..output.pictures import make_pictures
+    from ..output.study import draw_study, is_study
+    from ..output.sweep import draw_sweep, is_sweep
+
+    kinds = {is_sweep: draw_sweep, is_calibration: draw_calibration, is_study: draw_study}
+    try:
+        draw = next((draw for is_it, draw in kinds.items() if is_it(chosen.folder)), make_pictures)
+        problems = draw(chosen.folder)
+    except (OSError, ValueError) as error:
+        raise CaseError(str(error)) from None
+    for problem in problems:
+        print(f"note: {problem}", file=sys.stderr)
+    return 0
+
+
+def animate(chosen) -> int:
+    """Write an animation of a results folder."""
+    from ..output.pictures import make_animation
+
+    path = chosen.output or chosen.folder / "animation.gif"
+    try:
+        make_animation(chosen.folder, path, chosen.fps)
+    except (OSError, ValueError) as error:
+        raise CaseError(str(error)) from None
+    print(f"wrote {path}")
+    return 0
+
+
+def report(chosen) -> int:
+    """Write the report of a results folder."""
+    from ..output.calibration import is_calibration, write_calibration_report
+    from ..output.report import write_report
+    from ..output.study import is_study, write_study_report
+
+    kinds = {is_calibration: write_calibration_report, is_study: write_study_report}
+    write = next((write for is_it, write in kinds.items() if is_it(chosen.folder)), write_report)
+    print(f"wrote {write(chosen.folder)}")
+    return 0
+
+
+def verify(chosen) -> int:
+    """Compare the program with reference solutions."""
+    from ..output.console import print_checks
+    from ..output.progress import Terminal
+    from ..verification import CASES, SLOW, all_checks
+
+    unknown = [name for name in chosen.ids if name not in CASES]
+    if unknown:
+        raise CaseError(f"verify {unknown[0]}: unknown case; one of: {', '.join(CASES)}")
+    left_out = [] if chosen.ids or chosen.slow else [name for name in CASES if name in SLOW]
+    names = chosen.ids or [name for name in CASES if name not in left_out]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RunNote)  # checks show what notes would warn of
+        checks = [check for name in names for check in all_checks(name, CASES[name])]
+    if chosen.json:
+        print(json.dumps([check.as_row() for check in checks], indent=2, ensure_ascii=False))
+    else:
+        print_checks(Terminal(), checks)
+    if left_out:
+        print(
+            f"note: slow cases not computed: {', '.join(left_out)} (use --slow or their names)",
+            file=sys.stderr,
+        )
+    return 0 if all(check.passed for check in checks) else ComputationError.exit_code
+
+
+def schema(chosen) -> int:
+    """Write the JSON schema of case files."""
+    from .schema import case_schema
+
+    text = json.dumps(case_schema(), ensure_ascii=False, indent=1)
+    if chosen.output is None:
+        print(text)
+        return 0
+    check_absent(chosen.output, chosen.overwrite)
+    try:
+        chosen.output.write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise CaseError(f"{chosen.output}: cannot be written: {error.strerror}") from None
+    print(f"wrote {chosen.output}")
+    return 0
+
+
+def completion(chosen) -> int:
+    """Print the completion of commands and options for a shell."""
+    try:
+        import shtab
+    except ImportError:
+        raise CaseError("completion: needs the Python package shtab") from None
+    sys.stdout.write(shtab.complete(parser(), chosen.shell, preamble=_preamble()))
+    return 0
+
+
+def _preamble() -> dict[str, str]:
+    """Functions that complete names of starters and of verification cases in bash."""
+    from ..case.starters import starters
+    from ..verification import CASES
+
+    line_ends = "\\n"
+    lists = {"starters": [*starters()], "checks": [*CASES]}
+    functions = (  # shtab splits words at ends of lines only
+        f"_thermowear_{name}() {{ compgen -W $'{line_ends.join(words)}' -- \"$1\"; }}\n"
+        for name, words in lists.items()
+    )
+    return {"bash": "".join(functions)}

@@ -16,9 +16,9 @@ from contextlib import nullcontext
 
 from ..errors import CaseError, CaseNote, ComputationError
 from ..interrupts import DeferredSignals, ForcedEnd
-from . import case_commands, editor_commands, folder_commands
+from . import case_commands
 from .arguments import parser
-from .verifying import verify
+from .case_commands import verify
 
 _INTERRUPTED = 130
 _OF_THE_SYSTEM = {"basix", "dolfinx", "ffcx", "gmsh", "mpi4py", "petsc4py", "ufl"}
@@ -177,9 +177,9 @@ COMMANDS = {
     "mesh": case_commands.mesh,
     "shape": _shape,
     "verify": verify,
-    "plot": folder_commands.plot,
-    "animate": folder_commands.animate,
-    "report": folder_commands.report,
-    "schema": editor_commands.schema,
-    "completion": editor_commands.completion,
+    "plot": case_commands.plot,
+    "animate": case_commands.animate,
+    "report": case_commands.report,
+    "schema": case_commands.schema,
+    "completion": case_commands.completion,
 }

@@ -11,8 +11,7 @@ from .. import load
 from ..case import AnyCase, as_plain
 from ..errors import CaseError
 from ..geometry.cad.design import CARRIERS, Design, add_table, write_table
-from ..geometry.cad.faceted import write_faceted
-from ..geometry.cad.step import write_prism, write_section
+from ..geometry.cad.step import write_faceted, write_prism, write_section
 from ..geometry.cad.worn_body import moved_body, only_body, write_design_mesh
 from ..geometry.mesh.mixed import block_of
 from ..model.body import Body
@@ -107,8 +106,8 @@ def shape(
     """
     from mpi4py import MPI
 
-    from ..simulation.analyses.design import steady_design
     from ..simulation.analyses.positioning import prepare
+    from ..simulation.analyses.static import steady_design
     from ..simulation.from_case import model_of, with_accurate_mesh
     from ..timer import Phases
 

@@ -13,8 +13,8 @@ from dolfinx import fem
 from ..compat import geometry_dofmap
 from .bodies import Bodies, created_mesh, in_dolfinx_order
 from .compiled import assembled_matrix
-from .direct_solver import DirectSolver, multiply
-from .field import geometry_space, owned
+from .solvers.direct import DirectSolver, multiply
+from .spaces import geometry_space, owned
 
 
 class HarmonicExtension:
@@ -115,7 +115,7 @@ def serial_extension(
 
 
 def _numbers(space: fem.FunctionSpace) -> np.ndarray:
-    """Number of the point of each local node of a `field.geometry_space`."""
+    """Number of the point of each local node of a `spaces.geometry_space`."""
     mesh, index_map = space.mesh, space.dofmap.index_map
     points = np.asarray(mesh.geometry.input_global_indices)
     result = np.empty(index_map.size_local + index_map.num_ghosts, dtype=np.int64)

@@ -16,7 +16,7 @@ _SMOOTH, _ROUGH = 1e-4, 2e-2
 
 
 class CaseModel:
-    """Predictions of all measurements of a case, see `inference.forward.ForwardModel`.
+    """Predictions of all measurements of a case, see `inference.parameters.ForwardModel`.
 
     Predictions at neighbouring parameters take the time steps of the one that they are compared
     with, so that finite differences are smooth, and may be computed side by side. They are in the

@@ -10,7 +10,7 @@ import numpy as np
 from ..case import AnyCase
 from ..case.studies.calibration import CalibrationTable
 from ..inference import Normal, Parameter, ParameterSpace
-from ..inference.jacobian import NOISE
+from ..inference.fit import NOISE
 from .candidate_run import Runner
 from .case_model import CaseModel
 from .experiments import Experiment, experiments, overrides_of

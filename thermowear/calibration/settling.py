@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..inference import Identifiability, ParameterSpace, settling
-from ..inference.jacobian import steps_within
+from ..inference.fit import steps_within
 from ..results.quantity import split_key
 from ..results.summary_keys import GROUPS
 from .case_model import CaseModel

@@ -1,7 +1,5 @@
 """Inference from measurements: fits, identifiability, designs; uncertain inputs and sensitivity."""
 
-from .combinations import Combination, combinations
-from .design import ExpectedAccuracy, MeasurementDesign, expected_accuracy
 from .distributions import (
     LogNormal,
     LogUniform,
@@ -11,14 +9,36 @@ from .distributions import (
     UncertainInput,
     Uniform,
 )
-from .fit import Fit, fit
-from .forward import ForwardModel
-from .identifiability import Identifiability, Settling, identify, settling
-from .jacobian import central_jacobian, forward_jacobian
-from .joint_normal import JointNormal
-from .observations import Observations
-from .parameters import Parameter, ParameterSpace
+from .fit import Fit, JointNormal, central_jacobian, fit, forward_jacobian
+from .identifiability import (
+    Combination,
+    Identifiability,
+    Settling,
+    combinations,
+    identify,
+    settling,
+)
+from .parameters import ForwardModel, Observations, Parameter, ParameterSpace
 from .posterior import Posterior, log_posterior, require_emcee, sample_posterior
-from .propagation import Band, SampleQuantiles, linear_band, quantiles, sample_quantiles
-from .sampling import SaltelliDesign, Sample, latin_hypercube, saltelli, sobol_sequence
-from .sensitivity import SobolIndices, Swings, sobol_indices, swing_points, swings
+from .propagation import (
+    Band,
+    ExpectedAccuracy,
+    MeasurementDesign,
+    SampleQuantiles,
+    expected_accuracy,
+    linear_band,
+    quantiles,
+    sample_quantiles,
+)
+from .sensitivity import (
+    SaltelliDesign,
+    Sample,
+    SobolIndices,
+    Swings,
+    latin_hypercube,
+    saltelli,
+    sobol_indices,
+    sobol_sequence,
+    swing_points,
+    swings,
+)

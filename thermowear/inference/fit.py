@@ -1,5 +1,9 @@
 """Bounded weighted least squares with normal errors and priors.
 
+With the weighted Jacobian J of the observations and the rows P of the priors, the covariance is
+``(JᵀJ + PᵀP)⁻¹``. Directions that neither determines have no distribution: the parameters that take
+part in them have infinite intervals.
+
 The weighted residuals of observations and priors are minimised in internal coordinates by a trust
 region reflective method (Branch, Coleman and Li, SIAM J. Sci. Comput. 21 (1999) 1; scipy). Only
 predictions and finite differences of them are needed.
@@ -19,11 +23,265 @@ from scipy import stats
 from scipy.optimize import least_squares
 
 from ..errors import ComputationError
-from .forward import ForwardModel
-from .jacobian import AT_BOUND, NOISE, central_jacobian, distance_to_optimum, forward_jacobian
-from .joint_normal import JointNormal
-from .observations import Observations
-from .parameters import ParameterSpace
+from .parameters import ForwardModel, Observations, ParameterSpace
+
+NOISE = 1e-5
+"""Noise of derivatives relative to the largest ones, by which they count as zero."""
+AT_BOUND = 1e-3
+"""Distance to a bound, relative to the distance of both, up to which a parameter is held by it."""
+_ROOM = 0.25  # largest step relative to the distance of the bounds
+
+
+def forward_jacobian(
+    space: ParameterSpace, model: ForwardModel, internal: np.ndarray, predicted: np.ndarray
+) -> np.ndarray:
+    """Jacobian by forward differences, or backward ones at upper bounds: p predictions.
+
+    Parameters
+    ----------
+    internal : ndarray, shape (p,)
+        Internal coordinates of a point within the bounds.
+    predicted : ndarray, shape (n,)
+        Prediction there.
+
+    Returns
+    -------
+    ndarray, shape (n, p)
+        Derivatives with respect to the internal coordinates.
+    """
+    steps = steps_within(space, model.step)
+    steps = np.where(internal + steps > space.bounds[1], -steps, steps)
+    moved = _moved(space, model, internal, np.diag(steps))
+    return _finite(space, (moved - predicted).T / steps)
+
+
+def central_jacobian(
+    space: ParameterSpace, model: ForwardModel, internal: np.ndarray, predicted: np.ndarray
+) -> np.ndarray:
+    """Jacobian of second order: 2 p predictions; parameters as in `forward_jacobian`.
+
+    Differences are central, or one-sided with two steps into the interior at bounds::
+
+        f' ≈ (4 f(z + h) - f(z + 2 h) - 3 f(z))/(2 h)
+    """
+    steps = steps_within(space, model.step)
+    below = internal - steps < space.bounds[0]
+    above = internal + steps > space.bounds[1]
+    central = ~(below | above)
+    steps = np.where(above, -steps, steps)
+    offsets = np.concatenate([np.diag(steps), np.diag(np.where(central, -steps, 2 * steps))])
+    one, two = np.split(_moved(space, model, internal, offsets), 2)
+    centred, sided = one - two, 4 * one - two - 3 * predicted
+    return _finite(space, np.where(central[:, None], centred, sided).T / (2 * steps))
+
+
+def principal_directions(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Singular values of a Jacobian (n, p), and all p directions, also those without effect.
+
+    Returns
+    -------
+    singular_values : ndarray, shape (p,)
+        In descending order, with zeros where n < p.
+    directions : ndarray, shape (p, p)
+        Orthonormal right singular vectors, in columns.
+    """
+    triangle = np.linalg.qr(rows, mode="r")
+    _, found, transposed = np.linalg.svd(triangle, full_matrices=True)
+    singular_values = np.zeros(rows.shape[1])
+    singular_values[: len(found)] = found
+    return singular_values, transposed.T
+
+
+def without_effect(singular_values: np.ndarray, noise: float = NOISE) -> np.ndarray:
+    """True for singular values within the noise of the derivatives, shape (p,)."""
+    return singular_values <= noise * singular_values.max(initial=0.0)
+
+
+def distance_to_optimum(
+    space: ParameterSpace,
+    internal: np.ndarray,
+    rows: np.ndarray,
+    residuals: np.ndarray,
+    noise: float,
+) -> float:
+    """Length of the Gauss-Newton step within the bounds, in standard errors.
+
+    Parameters
+    ----------
+    internal : ndarray, shape (p,)
+        Internal coordinates of a point within the bounds.
+    rows : ndarray, shape (n, p)
+        Weighted Jacobian there, of observations and priors.
+    residuals : ndarray, shape (n,)
+        Weighted residuals there.
+    noise : float
+        Relative noise of the derivatives.
+    """
+    (lower, upper), slope = space.bounds, rows.T @ residuals
+    to_bound = np.where(slope > 0, internal - lower, upper - internal)
+    held = (to_bound < AT_BOUND * space.widths) & (slope != 0)
+    singular_values, directions = principal_directions(rows[:, ~held])
+    seen = ~without_effect(singular_values, noise)
+    inside = directions[:, seen].T @ slope[~held] / singular_values[seen]
+    return float(np.hypot(np.linalg.norm(rows[:, held] @ to_bound[held]), np.linalg.norm(inside)))
+
+
+def steps_within(space: ParameterSpace, step: float) -> np.ndarray:
+    """Steps of finite differences, of which two fit between the bounds to one side, shape (p,)."""
+    return np.minimum(step, _ROOM * space.widths)
+
+
+def _moved(
+    space: ParameterSpace, model: ForwardModel, internal: np.ndarray, offsets: np.ndarray
+) -> np.ndarray:
+    """Predictions at points moved by offsets (m, p), shape (m, n)."""
+    others = list(space.admissible(internal + offsets))
+    return np.array(model.neighbours(space.admissible(internal), others), dtype=float)
+
+
+def _finite(space: ParameterSpace, jacobian: np.ndarray) -> np.ndarray:
+    failed = ~np.isfinite(jacobian).all(axis=0)
+    if failed.any():
+        names = ", ".join(np.array(space.names)[failed])
+        raise ComputationError(
+            f"derivatives with respect to {names}: predictions beside the point could not be "
+            "computed; narrow the bounds, or start elsewhere"
+        )
+    return jacobian
+
+
+PART = 1e-3
+"""Component of a parameter in a direction of unit length from which on it takes part in it."""
+_SMALL = 1e-2  # change along an undetermined direction, relative to the distance of the bounds
+_ROUNDING = 1e-12
+
+
+@dataclass(frozen=True)
+class JointNormal:
+    """Normal distribution of p parameters about a point.
+
+    Attributes
+    ----------
+    space : ParameterSpace
+    mean : ndarray, shape (p,)
+        Internal coordinates of the mean.
+    factor : ndarray, shape (p, r)
+        Factor F of the covariance ``F Fᵀ`` of the determined directions.
+    null : ndarray, shape (p, m)
+        Orthonormal directions that are not determined.
+    degrees_of_freedom : float
+        Degrees of freedom of Student's t distribution; infinite if deviations are known.
+    """
+
+    space: ParameterSpace
+    mean: np.ndarray
+    factor: np.ndarray
+    null: np.ndarray
+    degrees_of_freedom: float = np.inf
+
+    @classmethod
+    def from_jacobian(
+        cls,
+        space: ParameterSpace,
+        mean: np.ndarray,
+        jacobian: np.ndarray,
+        noise: float = NOISE,
+        degrees_of_freedom: float = np.inf,
+    ) -> JointNormal:
+        """Distribution after observations with a weighted Jacobian (n, p), and the priors."""
+        singular_values, directions = principal_directions(jacobian)
+        seen = ~without_effect(singular_values, noise)
+        informed = singular_values[seen, None] * directions[:, seen].T
+        rows = np.concatenate([informed, space.prior_jacobian])
+        singular_values, directions = principal_directions(rows)
+        found = ~without_effect(singular_values, _ROUNDING)
+        factor = directions[:, found] / singular_values[found]
+        return cls(space, np.asarray(mean), factor, directions[:, ~found], degrees_of_freedom)
+
+    @classmethod
+    def from_covariance(
+        cls, space: ParameterSpace, mean: np.ndarray, covariance: np.ndarray
+    ) -> JointNormal:
+        """Distribution with a covariance (p, p) of the internal coordinates."""
+        variances, directions = np.linalg.eigh(np.asarray(covariance, dtype=float))
+        if not np.isfinite(variances).all() or variances[0] < -_ROUNDING * abs(variances[-1]):
+            raise ValueError("the covariance of the parameters is not positive semidefinite")
+        factor = directions * np.sqrt(np.maximum(variances, 0.0))
+        return cls(space, np.asarray(mean, dtype=float), factor, np.zeros((len(space), 0)))
+
+    @property
+    def size(self) -> int:
+        """Number p of parameters."""
+        return len(self.space)
+
+    @cached_property
+    def undetermined(self) -> np.ndarray:
+        """True for parameters that take part in a direction that is not determined, shape (p,).
+
+        Parameters that change less than their deviation along it, within the bounds, are left out.
+        """
+        change = np.abs(self.null) @ self.space.reach(self.null)
+        small = np.minimum(np.linalg.norm(self.factor, axis=1), _SMALL * self.space.widths)
+        return (np.linalg.norm(self.null, axis=1) > PART) & (change > small)
+
+    @property
+    def deviations(self) -> np.ndarray:
+        """Standard deviations of the internal coordinates, infinite if not determined, (p,)."""
+        return np.where(self.undetermined, np.inf, np.linalg.norm(self.factor, axis=1))
+
+    @property
+    def standard_errors(self) -> np.ndarray:
+        """Standard errors, relative ones of logarithmic parameters, shape (p,)."""
+        return self.deviations * self.space.scale
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Covariance of the internal coordinates, (p, p); inf and NaN where not determined."""
+        covariance = self.factor @ self.factor.T
+        covariance[self.undetermined] = covariance[:, self.undetermined] = np.nan
+        np.fill_diagonal(covariance, self.deviations**2)
+        return covariance
+
+    @property
+    def correlation(self) -> np.ndarray:
+        """Correlation of the internal coordinates, shape (p, p); NaN where not determined."""
+        with np.errstate(invalid="ignore", divide="ignore"):
+            correlation = self.covariance / np.outer(self.deviations, self.deviations)
+        np.fill_diagonal(correlation, np.where(self.undetermined, np.nan, 1.0))
+        return correlation
+
+    def quantile(self, level: float) -> float:
+        """Half-width of an interval in standard deviations."""
+        if not 0 < level < 1:
+            raise ValueError(f"level {level:g} of an interval; must be between 0 and 1")
+        return float(stats.t.ppf((1 + level) / 2, self.degrees_of_freedom))
+
+    def intervals(self, level: float = 0.95) -> np.ndarray:
+        """Intervals of the values, shape (p, 2); asymmetric for logarithmic parameters."""
+        reach = self.quantile(level) * self.deviations
+        return self.space.values(np.stack([self.mean - reach, self.mean + reach])).T
+
+    def ppf(self, quantiles: np.ndarray) -> np.ndarray:
+        """Values for independent quantiles in (0, 1), both of shape (n, p).
+
+        The coordinates are ``mean + L Φ⁻¹(q)`` with the Cholesky factor L of the covariance: a
+        quantile moves its parameter, and those after it by their correlation. Values may lie
+        beyond the bounds.
+        """
+        if self.null.size:
+            names = ", ".join(np.array(self.space.names)[self.undetermined])
+            raise ValueError(f"{names}: not determined, so that they have no distribution")
+        return self.space.values(self.mean + stats.norm.ppf(quantiles) @ self.cholesky.T)
+
+    @cached_property
+    def cholesky(self) -> np.ndarray:
+        """Lower triangular factor of the covariance, also of a singular one, shape (p, p)."""
+        rows = np.zeros((max(self.factor.shape[::-1]), self.size))
+        rows[: self.factor.shape[1]] = self.factor.T
+        triangle = np.linalg.qr(rows, mode="r")
+        signs = np.where(np.diag(triangle) < 0, -1.0, 1.0)
+        return (signs[:, None] * triangle).T
+
 
 _LEAST = 1e-12  # smallest scatter, relative to the deviations, for residuals that are zero
 _STALLED = 1e-3  # change of the parameters, relative to the tolerance, that ends the search

@@ -13,10 +13,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import ComputationError
-from .fit import Fit
-from .joint_normal import JointNormal
-from .observations import Observations
-from .parameters import ParameterSpace
+from .fit import Fit, JointNormal
+from .parameters import Observations, ParameterSpace
 from .propagation import quantiles
 
 Predictions = Callable[[Sequence[np.ndarray]], Sequence[np.ndarray]]

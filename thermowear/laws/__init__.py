@@ -9,17 +9,19 @@ from .distribution import Distribution, InPlace, rings, round_duty, uniform_trac
 from .formulas import interface_law, wear_rate
 from .interfaces import Law, LocalState, parameter, registered, registered_laws
 from .motions import RigidMotion, rotation, translation
-from .power_wear import PowerWear
+from .wear import PowerWear
 
 _PRINCIPLE = {
-    "functionals": (
+    "minimum": (
+        "Minimum",
         "PowerFunctional",
         "admissible_changes",
         "friction_dissipation",
+        "least_wear_dissipation",
+        "minimise",
         "wear_dissipation",
         "wear_volume_rate",
     ),
-    "minimum": ("Minimum", "least_wear_dissipation", "minimise"),
     "patch": ("ContactPatch", "WearVectors", "contact_patch", "wear_vectors"),
     "steady": ("NotCarried", "SelfLocking", "SteadyWear", "steady_pressure"),
 }

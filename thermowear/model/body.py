@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import CaseError
-from ..laws.coefficients import Table1D
+from ..laws.interfaces import Table1D
 
 WHY = "the material lies on a contact face"
 

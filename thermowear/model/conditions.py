@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
+from ..laws.histories import LoadHistory, TimeFunction
 from ..laws.motions import TurningAxis, spans
-from ..laws.time_course import LoadHistory, TimeFunction
 
 
 @dataclass(frozen=True)

@@ -9,13 +9,11 @@ from functools import cached_property
 import numpy as np
 
 from ..errors import CaseError
-from ..laws.coefficients import Multipliers
 from ..laws.distribution import IN_PLACE, Distribution, InPlace
 from ..laws.expressions import Region
-from ..laws.interfaces import Law, LocalState
-from ..laws.law_by_point import law_by_point
-from ..laws.layered_wear import layers_of
-from ..laws.plausible import typical_value
+from ..laws.formulas import typical_value
+from ..laws.interfaces import Law, LocalState, Multipliers
+from ..laws.wear import law_by_point, layers_of
 from .tracks import Track
 
 

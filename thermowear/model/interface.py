@@ -9,17 +9,16 @@ from typing import Literal
 
 import numpy as np
 
-from ..laws.coefficients import (
+from ..laws.formulas import PlaceFunction, typical_value
+from ..laws.histories import TimeFunction
+from ..laws.interfaces import (
     Constant,
+    Law,
     Multiplied,
     Multipliers,
     PressureConductance,
     harmonic_mean,
 )
-from ..laws.interfaces import Law
-from ..laws.place import PlaceFunction
-from ..laws.plausible import typical_value
-from ..laws.time_course import TimeFunction
 from .body import WHY, Facing, Material
 from .conditions import Motion
 from .face_wear import Wear
@@ -32,7 +31,7 @@ class HardnessConductance:
     Attributes
     ----------
     coefficient : float
-        [1/m], see `laws.coefficients`.
+        [1/m], see `laws.interfaces`.
     """
 
     coefficient: float

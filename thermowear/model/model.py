@@ -9,7 +9,7 @@ from typing import Literal, Protocol, TypeVar
 
 from ..errors import CaseError
 from ..geometry.mesh.mixed import AnyMesh
-from ..laws.time_course import LoadHistory, TimeFunction
+from ..laws.histories import LoadHistory, TimeFunction
 from .body import Body, Material
 from .conditions import Heat, Holder, Motion
 from .interface import Interface

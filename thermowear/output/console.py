@@ -11,8 +11,7 @@ from rich.text import Text
 from ..balances import errors_of, holds
 from ..results.summary_keys import PHASES, of_key
 from .files import between
-from .progress import PlainTable
-from .readable import readable, readable_unit
+from .progress import PlainTable, readable, readable_unit
 
 _OF_PARTS = {
     "contacts": (

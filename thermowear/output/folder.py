@@ -24,8 +24,7 @@ from ..results.points import by_contact
 from ..results.quantity import TABLES, table_of
 from .checkpoint import CHECKPOINT, write_checkpoint
 from .files import FRAMES, final_name, is_ours, name_at, read_object, write_text
-from .frames import remove_frames, write_fields, write_frame
-from .hot_spot_solid import HOT_SPOTS, write_hot_spots
+from .frames import HOT_SPOTS, remove_frames, write_fields, write_frame, write_hot_spots
 from .tables import RowWriter, write_points
 
 

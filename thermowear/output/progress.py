@@ -1,4 +1,4 @@
-"""Console output of a run while it proceeds."""
+"""Console output of a run while it proceeds, in units that suit the size of numbers."""
 
 from __future__ import annotations
 
@@ -10,8 +10,32 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from ..results.summary_keys import PHASES
-from .readable import readable_unit
+from ..results.summary_keys import PHASES, of_key
+
+_UNITS = {
+    "Pa": ((1e10, "GPa", 1e-9), (1e4, "MPa", 1e-6), (10.0, "kPa", 1e-3), (0.0, "Pa", 1.0)),
+    "m": ((1e-3, "mm", 1e3), (1e-8, "µm", 1e6), (0.0, "nm", 1e9)),
+}
+"""Units by SI unit: smallest size [SI], unit, and scale from the SI unit."""
+
+
+def readable_unit(key: str, size: float) -> tuple[str, float]:
+    """Readable unit for a number of a size [SI], and its scale from the SI unit."""
+    quantity = of_key(key)
+    for least, unit, scale in _UNITS.get(quantity.si, ()):
+        if abs(size) >= least and size:
+            return unit, scale
+    return quantity.unit, quantity.drawn(1.0)
+
+
+def readable(key: str, value: float, unit: str = "") -> tuple[float, str]:
+    """Number in a given unit, or else in a readable one, with that unit."""
+    quantity = of_key(key).shown_in(unit) if unit else of_key(key)
+    if unit or quantity.si not in _UNITS:
+        return quantity.drawn(value), quantity.unit
+    suited, scale = readable_unit(key, value)
+    return scale * value + 0.0, suited
+
 
 _PLAIN_INTERVAL = 5.0  # seconds between lines where the output is not a terminal
 

@@ -11,13 +11,18 @@ from typing import Any, Literal
 from ..case.values import units
 from ..case.values.units import expression, in_python
 from ..errors import CaseError
-from ..laws import layered_wear, power_wear, time_course
-from ..laws.coefficients import Constant, Table1D
-from ..laws.formulas import FormulaLaw, FormulaWear, interface_law, wear_rate
-from ..laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law
-from ..laws.place import PLACE, PlaceFunction
-from ..laws.plausible import require_interface_law
-from ..laws.time_course import TimeFunction
+from ..laws import histories, wear
+from ..laws.formulas import (
+    PLACE,
+    FormulaLaw,
+    FormulaWear,
+    PlaceFunction,
+    interface_law,
+    require_interface_law,
+    wear_rate,
+)
+from ..laws.histories import TimeFunction
+from ..laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Constant, Law, Table1D
 from ..model import body, conditions, interface
 from .body import BodySurface, require_surface
 
@@ -157,8 +162,8 @@ def LoadHistory(
     tangential_displacement_y: Sequence[Any] | None = None,
     torque: Sequence[Any] | None = None,
     twist: Sequence[Any] | None = None,
-) -> time_course.LoadHistory:
-    """Loads of a holder at instants, see `laws.time_course.LoadHistory`."""
+) -> histories.LoadHistory:
+    """Loads of a holder at instants, see `laws.histories.LoadHistory`."""
     loads = (
         *(force, approach, tangential_force, tangential_displacement, moment),
         *(tangential_force_y, tangential_displacement_y, torque, twist),
@@ -172,7 +177,7 @@ def LoadHistory(
             read[key] = each_quantity(kind, values, name)
     if cycle_start is not None:
         cycle_start = in_python(units.Instant, cycle_start, "LoadHistory.cycle_start")
-    return time_course.LoadHistory(instants, repeat, **read, cycle_start=cycle_start)
+    return histories.LoadHistory(instants, repeat, **read, cycle_start=cycle_start)
 
 
 def _instants(time: Sequence[Any], name: str) -> tuple[float, ...]:
@@ -256,19 +261,17 @@ def by_surface(kind: Any, given: Mapping[BodySurface, Any] | None, name: str) ->
     return result
 
 
-def PowerWear(coefficient: Any, b: float = 1.0, a: float = 1.0) -> power_wear.PowerWear:
-    """Wear rate ``coefficient p^b v^a``, see `laws.power_wear.PowerWear`."""
+def PowerWear(coefficient: Any, b: float = 1.0, a: float = 1.0) -> wear.PowerWear:
+    """Wear rate ``coefficient p^b v^a``, see `laws.wear.PowerWear`."""
     name = "PowerWear"
     b, a = number(b, f"{name}.b", 0.1, 10.0), number(a, f"{name}.a", 0.0, 10.0)
     unit = ("" if a == 1 else f"(m/s)^{1 - a:.12g} ") + f"1/Pa^{b:.12g}"
     kind = units.quantity(unit, f"1e-13 {unit}", gt=0)
-    return power_wear.PowerWear(in_python(kind, coefficient, f"{name}.coefficient"), b, a)
+    return wear.PowerWear(in_python(kind, coefficient, f"{name}.coefficient"), b, a)
 
 
-def LayeredWear(
-    thickness: Sequence[Any], laws: Sequence[Any], substrate: Any
-) -> layered_wear.LayeredWear:
-    """Wear of a face with layers, see `laws.layered_wear.LayeredWear`.
+def LayeredWear(thickness: Sequence[Any], laws: Sequence[Any], substrate: Any) -> wear.LayeredWear:
+    """Wear of a face with layers, see `laws.wear.LayeredWear`.
 
     Parameters
     ----------
@@ -289,10 +292,10 @@ def LayeredWear(
     if not found or len(found) != len(laws):
         raise CaseError(f"{name}: has {len(laws)} laws for {len(found)} layers")
     each = [rate_law(law, f"{name}.laws") for law in laws]
-    if any(isinstance(law, layered_wear.LayeredWear) for law in (*each, substrate)):
+    if any(isinstance(law, wear.LayeredWear) for law in (*each, substrate)):
         raise CaseError(f"{name}: a layer cannot have layers; give all of them in one list")
     each.append(rate_law(substrate, f"{name}.substrate"))
-    return layered_wear.LayeredWear(found, tuple(each))
+    return wear.LayeredWear(found, tuple(each))
 
 
 def PressureConductance(coefficient: Any) -> interface.HardnessConductance:

@@ -12,7 +12,7 @@ from ..case.values import units
 from ..case.values.regions import region
 from ..errors import CaseError
 from ..laws.expressions import Region
-from ..laws.time_course import TimeFunction
+from ..laws.histories import TimeFunction
 from ..model.conditions import Motion
 from ..model.face_wear import CompositeWear, FaceWear, Wear
 from ..model.interface import ContactMethod, HardnessConductance, Interface

@@ -12,8 +12,8 @@ from ..case.tables.conditions import FreeMotion
 from ..case.values import units
 from ..case.values.units import in_python
 from ..errors import CaseError
+from ..laws.histories import LoadHistory, TimeFunction
 from ..laws.motions import axis_of
-from ..laws.time_course import LoadHistory, TimeFunction
 from ..model.conditions import Holder, Motion
 from .body import BodySurface, MeshBody, require_surface
 from .conversion import by_surface, each_quantity, quantities

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from dolfinx import fem
 
-from ..bulk.field import basis_element, lagrange_space
-from ..bulk.spaces import Spaces
+from ..bulk.spaces import Spaces, basis_element, lagrange_space
 from ..compat import coordinate_element, geometry_dofmap
 from ..errors import CaseError
 from ..geometry.checks.mesh_checks import note_size, oriented

@@ -10,8 +10,7 @@ import pytest
 
 import thermowear as tw
 from thermowear.app.batch.pool import ProcessPool
-from thermowear.app.calibration.calibrate import problem_of
-from thermowear.app.calibration.record import record_of, rows_of
+from thermowear.app.calibration.calibrate import problem_of, record_of, rows_of
 from thermowear.calibration.candidate_run import Prediction
 from thermowear.calibration.case_model import CaseModel
 from thermowear.calibration.measurement import Measurement

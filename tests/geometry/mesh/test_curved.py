@@ -11,9 +11,9 @@ from thermowear.geometry.mesh.curved import curved, curving
 from thermowear.geometry.mesh.gmsh_session import gmsh_model
 from thermowear.geometry.mesh.nodes import boundary
 from thermowear.geometry.mesh.tagged import TaggedMesh, scaled_jacobians
-from thermowear.geometry.reading.bodies import bodies_in
+from thermowear.geometry.reading.assembly import bodies_in
+from thermowear.geometry.reading.contents import Named
 from thermowear.geometry.reading.file_contents import read_contents
-from thermowear.geometry.reading.named import Named
 
 from ...scripting.from_case import CELLS, FACETS, own_mesh
 

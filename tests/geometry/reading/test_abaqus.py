@@ -8,8 +8,8 @@ import pytest
 from thermowear.errors import CaseNote
 from thermowear.geometry.mesh.mixed import AnyMesh
 from thermowear.geometry.reading.abaqus import read_abaqus
-from thermowear.geometry.reading.bodies import bodies_in
-from thermowear.geometry.reading.named import Named
+from thermowear.geometry.reading.assembly import bodies_in
+from thermowear.geometry.reading.contents import Named
 
 COLUMNS = 4
 SAMPLE = int(os.environ.get("THERMOWEAR_MUTATIONS", "3"))

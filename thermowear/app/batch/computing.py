@@ -261,7 +261,7 @@ def new_series(alone: bool = False):
         start_petsc(alone)
         from mpi4py import MPI
 
-        from ...simulation.analyses.series import Series
+        from ...simulation.analyses.run import Series
     return Series(MPI.COMM_SELF if alone else None)
 
 

@@ -81,10 +81,10 @@ def variants(
 
 
 def grouped(cases: Iterable[AnyCase]) -> list[list[int]]:
-    """Numbers of the cases that share set-up results; see `simulation.analyses.series.groups`."""
+    """Numbers of the cases that share set-up results; see `simulation.analyses.run.groups`."""
     with DeferredSignals():
         start_petsc(alone=True)
-        from ...simulation.analyses.series import groups
+        from ...simulation.analyses.run import groups
         from ...simulation.from_case import model_of
 
     return groups(model_of(case) for case in cases)

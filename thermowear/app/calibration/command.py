@@ -17,8 +17,7 @@ from ...output.calibration import CalibrationFolder, draw_calibration, write_cal
 from ...output.progress import PlainTable, Terminal
 from ..batch.executors import Choice, Crew
 from ..batch.reporting import checksum_of, resumable
-from .calibrate import problem_of, runner
-from .record import record_of, record_of_plan, rows_of
+from .calibrate import problem_of, record_of, record_of_plan, rows_of, runner
 
 _PARALLEL = 1000
 """Number of runs that is worth the start of all processes."""

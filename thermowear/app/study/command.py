@@ -21,8 +21,8 @@ from ...output.study import (
 )
 from ..batch.executors import Choice, Crew, Workers
 from ..batch.reporting import BatchReport, checksum_of
+from .design import StudyEnd, checked_groups
 from .study import Study, StudyPlan, evaluated
-from .variants import StudyEnd, checked_groups
 
 _INTERVAL = 2.0
 """Least time between two lines on the console [s]."""

@@ -25,12 +25,16 @@ from ...inference import (
 )
 from ...results.summary_keys import group_of
 from ..batch.computing import Lost, compute
-from .bands import Bands, bands
-from .calibrated import calibrated_input
-from .curves import Curves
-from .design import StudyDesign, study_design
-from .inputs import inputs_of
-from .variants import StudyEnd, StudyJob, checked_groups, compute_study_variant
+from .bands import Bands, Curves, bands
+from .design import (
+    StudyDesign,
+    StudyEnd,
+    StudyJob,
+    checked_groups,
+    compute_study_variant,
+    study_design,
+)
+from .inputs import calibrated_input, inputs_of
 
 _ROOM = 12_000_000
 """Largest number of values of all curves."""

@@ -15,18 +15,76 @@ import scipy.sparse as sp
 
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
-from ..direct_solver import GroupSolvers, eliminate, multiply
-from ..field import without_fixed
-from ..group_solvers import solver_in_group
-from ..joints.joined_solver import JoinedSolver
-from ..joints.joint import Joints
-from ..multigrid_solver import MultigridSolver
-from ..solver_choice import SolverChoice
-from ..spaces import Spaces
+from ..joints import NO_JOINTS, Joints
+from ..solvers.choice import AnySolver, SolverChoice, linear_solver
+from ..solvers.direct import GroupSolvers, eliminate, multiply
+from ..solvers.groups import AnyFactor, JoinedSolver, SolverInGroup, solver_in_group
+from ..solvers.multigrid import MultigridSolver
+from ..spaces import Spaces, without_fixed
 from .advection import Advection
-from .conduction_solver import ConductionSolver, conduction_solver
-from .even_paths import EvenFactor, EvenPaths
-from .group_conduction import GroupConduction
+from .paths import EvenFactor, EvenPaths, PathSolver
+
+
+@dataclass(frozen=True)
+class GroupConduction:
+    """Conduction in a group of bodies; it does not depend on the heat in the others.
+
+    Attributes
+    ----------
+    solver : DirectSolver, JoinedSolver or SolverInGroup
+        Solver of conductivity plus bath, with prescribed temperatures eliminated.
+    fixed : ndarray of bool, shape (n_own,)
+        Mask of prescribed temperatures, rows of the group owned by this rank.
+    symmetric : bool
+        True if its matrix is symmetric.
+    """
+
+    solver: AnyFactor | SolverInGroup
+    fixed: np.ndarray
+    symmetric: bool
+
+    def respond(self, heat: np.ndarray | sp.csr_matrix) -> np.ndarray:
+        """Rise [K] due to nodal heat [W] in the group alone, see `Conduction.respond`."""
+        return self.solver.solve(without_fixed(heat, self.fixed))
+
+    def adjoint_response(self, weights: np.ndarray) -> np.ndarray:
+        """Adjoint of `respond` by columns."""
+        if self.symmetric:
+            return self.respond(weights)
+        found = self.solver.solve_transposed(without_fixed(weights, self.fixed))
+        return without_fixed(found, self.fixed)
+
+
+ConductionSolver = AnySolver | EvenFactor
+
+
+def conduction_solver(
+    spaces: Spaces,
+    conductivity: PETSc.Mat,
+    bath: PETSc.Mat,
+    fixed: np.ndarray,
+    moving: Advection | None,
+    even: EvenPaths | None,
+    choice: SolverChoice,
+    symmetric: bool | None = None,
+    coupled: bool = False,
+    joints: Joints = NO_JOINTS,
+) -> ConductionSolver:
+    """Set up the solver of conductivity plus bath, without the prescribed temperatures.
+
+    Where temperatures are uniform along paths it is direct. `coupled` as in `linear_solver`.
+    """
+    matrix = conductivity.copy()
+    matrix.axpy(1.0, bath, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    known = "definite" if (moving is None if symmetric is None else symmetric) else "none"
+    if even is not None:
+        return even.factor(matrix, fixed, known, joints)
+    first = matrix.getOwnershipRange()[0]
+    matrix.zeroRowsColumns((np.flatnonzero(fixed) + first).astype(PETSc.IntType), diag=1.0)
+    if choice.iterative and moving is not None and moving.paths is not None and not joints.count:
+        return PathSolver(matrix, spaces, fixed, moving.paths)
+    return linear_solver(choice, matrix, spaces, fixed, known, coupled=coupled, joints=joints)
+
 
 _RATE_TOLERANCE = 1e-3
 """Relative residual of rates of temperature, which serve an estimate."""

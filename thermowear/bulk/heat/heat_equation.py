@@ -11,20 +11,15 @@ import numpy as np
 import ufl
 from dolfinx import default_scalar_type, fem
 
-from ..bodies import Bodies
-from ..body_mesh import BodyMesh
+from ..bodies import Bodies, BodyMesh
 from ..compiled import assembled_matrix
-from ..field import owned
-from ..joints.joint import NO_JOINTS, Joints
+from ..joints import NO_JOINTS, Joints
 from ..kinematics import Kinematics, section_measure
-from ..solver_choice import SolverChoice
-from ..spaces import Spaces, block_diagonal
-from .advection import Advection, BodyAdvection, advection
-from .conduction import Conduction
-from .conduction_solver import conduction_solver
-from .even_paths import EvenPaths
-from .passage import Passage
-from .path_solver import closed_paths
+from ..solvers.choice import SolverChoice
+from ..spaces import Spaces, block_diagonal, owned
+from .advection import Advection, BodyAdvection, Passage, advection
+from .conduction import Conduction, conduction_solver
+from .paths import EvenPaths, closed_paths
 
 
 @dataclass(frozen=True)
@@ -75,7 +70,7 @@ def conduction(
     choice : SolverChoice, optional
         Direct by default.
     joints : Joints, optional
-        Joints of glued bodies, see `contact.ties.joints`.
+        Joints of glued bodies, see `contact.ties`.
     """
     spaces, choice = joints.joining(spaces), choice or SolverChoice()
     spread = passage is not None and passage.spread

@@ -20,10 +20,9 @@ import ufl
 
 from ..bodies import Bodies
 from ..compiled import assembled_matrix
-from ..direct_solver import multiply
+from ..elasticity.elasticity import Elasticity, ThermalForces
 from ..kinematics import Kinematics
-from ..mechanics.elasticity import Elasticity
-from ..mechanics.thermal_forces import ThermalForces
+from ..solvers.direct import multiply
 from ..spaces import Spaces, block_diagonal
 from .conduction import Conduction
 from .heat_equation import ThermalMaterial, conducting

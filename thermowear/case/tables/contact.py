@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field
 
 from ...errors import quoted
+from ...laws.formulas import typical_value
 from ...laws.interfaces import Law
-from ...laws.plausible import typical_value
 from ..values import units
 from ..values.section import Number, Section, Switch, number_or
 from .laws import FluidPressure, Friction, law_of

@@ -19,12 +19,24 @@ from pydantic import (
 )
 
 from ...errors import quoted
-from ...laws.coefficients import Constant, Table1D
 from ...laws.expressions import Expression
-from ...laws.formulas import FormulaLaw, FormulaWear
-from ...laws.interfaces import INTERFACE_VARIABLES, WEAR_VARIABLES, Law, Role, registered_laws
-from ...laws.place import PLACE, PlaceFunction
-from ...laws.plausible import require_interface_law, require_wear_rate
+from ...laws.formulas import (
+    PLACE,
+    FormulaLaw,
+    FormulaWear,
+    PlaceFunction,
+    require_interface_law,
+    require_wear_rate,
+)
+from ...laws.interfaces import (
+    INTERFACE_VARIABLES,
+    WEAR_VARIABLES,
+    Constant,
+    Law,
+    Role,
+    Table1D,
+    registered_laws,
+)
 from ..values import units
 from ..values.json_schema import AnyOf, WrittenAs, text_such_as
 from ..values.section import KeyFault, Number, Section
@@ -121,13 +133,13 @@ def wear_rate_of(value: Expression | LawTable) -> Law:
 
 
 class PressureConductanceTable(Section):
-    """Conductance proportional to the pressure, see `laws.coefficients`.
+    """Conductance proportional to the pressure, see `laws.interfaces`.
 
     Attributes
     ----------
     coefficient : float
         Conductance over the product of pressure over hardness and mean conductivity, see
-        `laws.coefficients` [1/m].
+        `laws.interfaces` [1/m].
     """
 
     type: Literal["pressure"]

@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ...errors import CaseError
-from ...laws.time_course import LoadHistories
+from ...laws.histories import LoadHistories
 from ..studies.calibration import CalibrationTable
 from ..studies.study import StudyTable
 from ..values.pressing import Pressing, resolving

@@ -8,8 +8,8 @@ from typing import Annotated, Any, ClassVar, Generic, TypeVar
 
 from pydantic import Field, TypeAdapter, ValidationError, ValidationInfo, model_validator
 
-from ...laws.coefficients import Multipliers, Table1D
-from ...laws.time_course import TANGENTIAL, LoadHistory, TimeFunction
+from ...laws.histories import TANGENTIAL, LoadHistory, TimeFunction
+from ...laws.interfaces import Multipliers, Table1D
 from ..values import units
 from ..values.csv_columns import Columns, read_columns
 from ..values.section import KeyFault, Number, Section, Switch, UserFile
@@ -234,7 +234,7 @@ class TemperatureHistory(TimeHistory):
 
 
 class History(TimeHistory):
-    """Loads of the holder of body 1 at instants, see `laws.time_course.LoadHistory`."""
+    """Loads of the holder of body 1 at instants, see `laws.histories.LoadHistory`."""
 
     COLUMNS = {
         "time": "s",

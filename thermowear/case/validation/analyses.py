@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import chain
 from typing import Any
 
-from ...laws.time_course import TANGENTIAL, LoadHistory
+from ...laws.histories import TANGENTIAL, LoadHistory
 from ..any_case import AnyCase
 from ..tables.analyses import Fretting, Reciprocating, Transient
 from ..tables.schema import Case

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain
 
-from ...laws.time_course import TANGENTIAL
+from ...laws.histories import TANGENTIAL
 from ..assembly.schema import AssemblyCase
 from ..assembly.tables import AssemblyHolderTable
 from ..values.section import Fault

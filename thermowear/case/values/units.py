@@ -17,8 +17,8 @@ from pydantic import BeforeValidator, PlainSerializer
 
 from ...errors import CaseError, quoted
 from ...laws.expressions import Dimension, Expression, parse_expression
+from ...laws.formulas import PLACE
 from ...laws.interfaces import UNITS
-from ...laws.place import PLACE
 from .json_schema import WrittenAs, quantity_text
 from .unit_names import similar_units, unknown_unit, without_offset
 

@@ -1,9 +1,12 @@
-"""Contact faces, gathered from all ranks: chains of curved facets, or triangles, quadrilaterals.
+"""Contact faces, gathered from all ranks: chains of curved facets, or surfaces in space.
 
 Faces are replicated on all ranks, in an order that does not depend on the number of ranks, so that
 pairing needs no communication. Contact points of a plane body are ordered along its chain from the
 first end to the last; a closed curve (full pin in a full bush) is cut at the vertex farthest from
 the other face.
+
+A body whose cells have another order has the same facets, corners and nodes with other numbers, see
+`Renumbering`.
 """
 
 from __future__ import annotations
@@ -13,10 +16,10 @@ from functools import cached_property
 
 import basix
 import numpy as np
+from scipy.spatial import cKDTree
 
-from ...bulk.bodies import Bodies
-from ...bulk.body_mesh import BodyMesh
-from ...bulk.field import reference_element
+from ...bulk.bodies import Bodies, BodyMesh
+from ...bulk.spaces import reference_element
 from ...compat import coordinate_element
 from ...errors import CaseError
 from ...lagrange import (
@@ -26,13 +29,20 @@ from ...lagrange import (
     lattice,
     lobatto,
     matching,
+    on_lattice,
     order_of,
 )
-from .facet_tree import FacetTree
-from .facets import FacetSet, FacetTable, gather_facets
-from .part_values import EQUAL, PartValues
+from .facets import (
+    EQUAL,
+    FacetSet,
+    FacetTable,
+    FacetTree,
+    PartValues,
+    SampledFacets,
+    gather_facets,
+    sampled,
+)
 from .projection import project
-from .slender_facets import SampledFacets, sampled
 
 ONWARD = (1.0, 0.3)
 """Direction of a chain: along x; upright faces begin at the lower end, also if slightly worn."""
@@ -283,3 +293,68 @@ def facet_nodes(mesh) -> tuple[str, np.ndarray]:
     for part, other in zip(t.reshape(len(t), -1).T, others, strict=True):
         places = places + part[:, None] * (other - first)
     return of_facets, matching(places, equispaced(kind.name, order).points)
+
+
+@dataclass(frozen=True)
+class Renumbering:
+    """New numbers of a surface.
+
+    Attributes
+    ----------
+    kind : str
+        Kind of its facets.
+    nodes : ndarray of int, shape (n_nodes,)
+        Former number of each node.
+    facets : ndarray of int, shape (n_facets,)
+        New number of each former facet.
+    corners : ndarray of int, shape (n_facets, n_corners)
+        Former corner at each new corner of a former facet, in the order of `lagrange.lattice`.
+    """
+
+    kind: str
+    nodes: np.ndarray
+    facets: np.ndarray
+    corners: np.ndarray
+
+    def place(self, facet: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """New facets (n,) and parameters (n, 2) of points given by the former ones."""
+        former = on_lattice(1, t, kind=self.kind)[0]
+        weights = np.take_along_axis(former, self.corners[facet], axis=1)
+        return self.facets[facet], weights @ lattice(1, self.kind)
+
+    def of_facets(self, values: np.ndarray) -> np.ndarray:
+        """Values by new facet, given by former facet (n_facets, ...)."""
+        result = np.empty_like(values)
+        result[self.facets] = values
+        return result
+
+
+def renumbering(former: Surface, places: np.ndarray, new: Surface) -> Renumbering:
+    """Match the facets of a surface to those of another mesh with the same nodes.
+
+    Parameters
+    ----------
+    former : Surface
+    places : ndarray, shape (n_nodes, 3)
+        Places of its nodes in the new mesh, see `contact.wear.worn_face.nodes_of` [m].
+    new : Surface
+
+    Raises
+    ------
+    ValueError
+        If the facets differ.
+    """
+    own, order = new.numbers(new.order), new.order
+    at = np.empty((own.max() + 1, 3))
+    at[own] = new.nodes
+    nodes = cKDTree(places).query(at)[1]
+    ends = corner_nodes(order, new.kind)
+    before, after = former.numbers(order)[:, ends], nodes[own][:, ends]
+    each = [np.sort(corners, axis=1) for corners in (before, after)]
+    first, second = (np.lexsort(corners.T) for corners in each)
+    if not np.array_equal(each[0][first], each[1][second]):
+        raise ValueError(f"the facets of {former.name} differ")
+    facets = np.empty(len(before), dtype=np.int64)
+    facets[first] = second
+    same = before[:, None] == after[facets][:, :, None]
+    return Renumbering(new.kind, nodes, facets, same.argmax(axis=2))

@@ -1,4 +1,9 @@
-"""Curved facets of a contact face: geometry, and the facets that a rank owns."""
+"""Curved facets of a contact face: geometry, and the facets that are close to points.
+
+Where a facet is curved by more than a fraction of its width, its plane approximation is closer to
+points of neighbouring facets than to its own ones. Points all over the facets bound the distance
+instead: each facet that can be the closest one is a candidate.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +14,78 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from ...bulk.body_mesh import BodyMesh
+from ...bulk.bodies import BodyMesh
 from ...compat import geometry_dofmap
 from ...errors import CaseError
 from ...lagrange import corner_nodes, lattice, lebesgue, lobatto, on_lattice, order_of
-from .part_values import PartValues
-from .smooth_normals import across, corner_corrections, smooth_normals
+from .normals import across, corner_corrections, smooth_normals
+
+
+class PartValues(NamedTuple):
+    """Values by part of a body; without any they are equal for all.
+
+    Attributes
+    ----------
+    softness : dict of str to float
+        ``(1 - ν²) / E``, or the wear rate that takes its place; only ratios count.
+    group : dict of str to int
+        Group of equally wearing materials.
+    """
+
+    softness: dict[str, float] = {}
+    group: dict[str, int] = {}
+
+
+EQUAL = PartValues()
+"""Equal values of all parts."""
+
+
+_NEAREST = 12
+"""Number of facets of each octave that are candidates for the closest one, by their centres."""
+
+
+class FacetTree:
+    """Centres of facets in space, in one tree for each octave of their radii.
+
+    Parameters
+    ----------
+    nodes : ndarray, shape (n_facets, n_nodes, 3) [m]
+
+    Attributes
+    ----------
+    radii : ndarray, shape (n_facets,)
+        Radii of the spheres round the facets [m].
+    """
+
+    def __init__(self, nodes: np.ndarray):
+        centres = nodes.mean(axis=1)
+        self.radii = np.linalg.norm(nodes - centres[:, None], axis=2).max(axis=1)
+        octave = np.floor(np.log2(self.radii / self.radii.min())).astype(int)
+        groups = [np.flatnonzero(octave == k) for k in np.unique(octave)]
+        self._trees = [(g, cKDTree(centres[g]), float(self.radii[g].max())) for g in groups]
+
+    def nearest(self, points: np.ndarray) -> np.ndarray:
+        """Facets of each octave with the nearest centres to points, (n, n_candidates)."""
+        found = [
+            alike[tree.query(points, np.arange(1, min(_NEAREST, len(alike)) + 1))[1]]
+            for alike, tree, _ in self._trees
+        ]
+        return np.hstack(found)
+
+    def touching(self, centres: np.ndarray, radii: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Pairs of a sphere and a facet whose own sphere overlaps it, in order of both."""
+        spheres, facets = [], []
+        for alike, tree, largest in self._trees:
+            found = tree.query_ball_point(centres, radii + largest)
+            counts = np.array([len(part) for part in found])
+            spheres.append(np.repeat(np.arange(len(centres)), counts))
+            facets.append(alike[np.concatenate(found).astype(np.int64)])
+        sphere, facet = np.concatenate(spheres), np.concatenate(facets)
+        order = np.lexsort((facet, sphere))
+        return sphere[order], facet[order]
+
 
 _FLATNESS_TOLERANCE = 1e-9
 """Largest deviation of a facet treated as a parallelogram, relative to its shorter side."""
@@ -321,3 +391,118 @@ def gather_facets(
     if len(table.rank) == 0:
         raise CaseError(f"geometry: the contact face {surface} has no facets in the mesh")
     return table
+
+
+_SLENDER = 0.2
+"""Deviation of the edges from chords, relative to the width of a facet, of slender facets."""
+_PIECES = 10.0
+"""Squared number of pieces along the sides of a facet, relative to that deviation."""
+_MOST_PIECES = 8
+_MARGIN = 1.05
+"""Radius of a sphere round a piece relative to the distance of the points in it."""
+_AT_ONCE = 4096
+"""Number of points that are searched together."""
+
+
+def slenderness(face: FacetSet) -> np.ndarray:
+    """Deviation of nodes from plane facets with straight edges, relative to the width, (n,)."""
+    every = np.arange(len(face.nodes))[:, None]
+    off = np.linalg.norm(
+        face.flattened.points(every, lattice(face.order, face.kind)) - face.nodes, axis=2
+    )
+    first, second = face.flattened.sides.swapaxes(0, 1)
+    sides = [first, second, first - second] if face.kind == "triangle" else [first, second]
+    longest = np.max([np.linalg.norm(side, axis=1) for side in sides], axis=0)
+    return off.max(axis=1) * longest / np.linalg.norm(np.cross(first, second), axis=1)
+
+
+class SampledFacets:
+    """Points on the facets, and spheres round the pieces of facets about them.
+
+    Parameters
+    ----------
+    face : FacetSet
+        Surface.
+    slender : ndarray of bool, shape (n_facets,)
+        Facets that are divided into pieces.
+    pieces : int
+        Number of pieces along their sides.
+    """
+
+    def __init__(self, face: FacetSet, slender: np.ndarray, pieces: int):
+        self._face, self._slender = face, slender
+        parts = [(np.flatnonzero(~slender), 1), (np.flatnonzero(slender), pieces)]
+        found = [_pieces(face, facets, count) for facets, count in parts]
+        self._facet, self._t, points, radii = (np.concatenate(v) for v in zip(*found, strict=True))
+        octave = np.floor(np.log2(radii / radii.min())).astype(int)
+        groups = [np.flatnonzero(octave == k) for k in np.unique(octave)]
+        self._trees = [(g, cKDTree(points[g]), _MARGIN * float(radii[g].max())) for g in groups]
+
+    def near(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Pairs of a point (n, 3) and a facet that can be its closest one.
+
+        Returns
+        -------
+        point, facet : ndarray of int, shape (n_pairs,)
+            Ascending.
+        start : ndarray, shape (n_pairs, 2)
+            Parameters on the facet near the closest place.
+        """
+        starts = range(0, len(points), _AT_ONCE)
+        parts = [self._near(points[i : i + _AT_ONCE], i) for i in starts]
+        point, facet, start = (np.concatenate(column) for column in zip(*parts, strict=True))
+        plane = np.flatnonzero(~self._slender[facet])
+        flat = self._face.flattened.parameters(facet[plane], points[point[plane]])
+        start[plane] = self._face.inside(flat)
+        return point, facet, start
+
+    def _near(self, points: np.ndarray, offset: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        bound = np.min([tree.query(points)[0] for _, tree, _ in self._trees], axis=0)
+        found, pieces, distances = [], [], []
+        for members, tree, radius in self._trees:
+            lists = tree.query_ball_point(points, bound + radius)
+            point = np.repeat(np.arange(len(points)), [len(part) for part in lists])
+            local = np.concatenate(lists).astype(np.int64)
+            found.append(point)
+            pieces.append(members[local])
+            distances.append(np.linalg.norm(points[point] - tree.data[local], axis=1))
+        point, piece = np.concatenate(found), np.concatenate(pieces)
+        facet = self._facet[piece]
+        order = np.lexsort((np.concatenate(distances), facet, point))
+        point, facet, piece = point[order], facet[order], piece[order]
+        new = (np.diff(point, prepend=-1) != 0) | (np.diff(facet, prepend=-1) != 0)
+        return point[new] + offset, facet[new], self._t[piece[new]]
+
+
+def sampled(face: FacetSet) -> SampledFacets | None:
+    """Sampled facets of a surface; None if no facet is slender and curved."""
+    found = slenderness(face) if face.order > 1 else np.zeros(1)
+    if found.max() <= _SLENDER:
+        return None
+    pieces = min(int(np.ceil(np.sqrt(_PIECES * found.max()))), _MOST_PIECES)
+    return SampledFacets(face, found > _SLENDER, pieces)
+
+
+def _pieces(face: FacetSet, facets: np.ndarray, count: int) -> tuple[np.ndarray, ...]:
+    """Pieces of facets: facet, parameters of the middle, its place, and radius about it [m]."""
+    origin, size = _division(face.kind, count)
+    middle = origin + size[:, None] * lattice(1, face.kind).mean(axis=0)
+    rim = origin[:, None] + size[:, None, None] * lattice(2, face.kind)
+    facet, t = np.repeat(facets, len(middle)), np.tile(middle, (len(facets), 1))
+    points = face.points(facet, t)
+    around = face.points(
+        np.repeat(facet, rim.shape[1]), np.tile(rim.reshape(-1, 2), (len(facets), 1))
+    )
+    apart = around.reshape(len(points), rim.shape[1], 3) - points[:, None]
+    return facet, t, points, np.linalg.norm(apart, axis=2).max(axis=1, initial=0.0)
+
+
+def _division(kind: str, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Origins (n, 2) and sizes (n,) of equal parts of a facet; negative if turned by 180°."""
+    steps = np.stack(np.meshgrid(*[np.arange(count)] * 2, indexing="ij"), axis=-1).reshape(-1, 2)
+    if kind != "triangle":
+        return steps / count, np.full(len(steps), 1 / count)
+    total = steps.sum(axis=1)
+    upright, turned = steps[total < count], steps[total < count - 1] + 1
+    sizes = np.repeat([1 / count, -1 / count], [len(upright), len(turned)])
+    return np.concatenate([upright, turned]) / count, sizes

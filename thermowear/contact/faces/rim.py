@@ -13,12 +13,12 @@ import dolfinx
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...bulk.body_mesh import BodyMesh
+from ...bulk.bodies import BodyMesh
 from ...compat import geometry_dofmap
 from ...lagrange import corner_nodes, lattice
 from .face import facet_nodes
 from .facets import FacetSet
-from .smooth_normals import across
+from .normals import across
 
 _SMOOTH = np.cos(np.radians(10.0))
 """Cosine of the angle from which on an edge is sharp: chamfers are at least that steep."""

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from ...errors import ComputationError
-from ..operators.tangential import HeldMotion
+from ..operators.rigid_motion import HeldMotion
 
 _MARGIN = 1e-9
 _SWEEPS = 4

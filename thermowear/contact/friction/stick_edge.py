@@ -35,7 +35,7 @@ import scipy.sparse as sp
 from scipy.spatial import cKDTree
 
 from ..operators.pressure import Basis, scaled
-from ..search.contacts import Contacts
+from ..search.pairing import Contacts
 from .stick_slip_state import Status, StickSlipState
 
 _Each = TypeVar("_Each", float, np.ndarray)

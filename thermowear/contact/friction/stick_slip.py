@@ -2,7 +2,7 @@
 
 Coulomb friction is history dependent: each state follows from the previous one. It is rate
 independent: a load history is a polygon, given by its corners. Wear: see `slip_wear`; signs: see
-`tangential`.
+`contact.operators.rigid_motion`.
 """
 
 from __future__ import annotations
@@ -16,8 +16,7 @@ from ...errors import ComputationError
 from ..wear.implicit_step import newton_with_wear
 from .frictional_contact import FrictionalContact, unloaded
 from .gross_slip import FullSliding
-from .increment_wear import IncrementWear, WearSlope
-from .slip_wear import SlipWear
+from .slip_wear import IncrementWear, SlipWear, WearSlope
 from .stick_slip_state import Loads, StickSlipState
 
 _MAX_HALVINGS = 6

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import null_space
 
-from ...bulk.mechanics.elasticity import Elasticity
+from ...bulk.elasticity.elasticity import Elasticity
 from ..operators.pressure import Basis, dense, scaled
 from ..search.pairing import Pairing
 from .nitsche import lame_at_points, on_every_facet

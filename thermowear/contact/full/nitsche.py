@@ -3,8 +3,8 @@
 The stress is that of the body whose face carries the points, here body 1.
 
 The traction operator maps nodal displacements to the normal stress, transposed and distributed like
-the operators of `traces`. The parameters, of the penalty method too, come from the cells at the
-contact.
+the operators of `condensation`. The parameters, of the penalty method too, come from the cells at
+the contact.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ import numpy as np
 import scipy.sparse as sp
 from dolfinx import fem
 
-from ...bulk.field import reference_element
-from ...bulk.mechanics.elastic_body import ElasticBody
-from ...bulk.mechanics.elasticity import Elasticity
+from ...bulk.elasticity.body import ElasticBody
+from ...bulk.elasticity.elasticity import Elasticity
+from ...bulk.spaces import reference_element
 from ...compat import coordinate_element, geometry_dofmap
 from ...lagrange import equispaced, tabulated
 from ...parallel import sum_over_ranks
-from ..operators.traces import gather_rows, reference_points
+from ..operators.condensation import gather_rows, reference_points
 from ..search.pairing import PairedFace, Pairing
 
 GAMMA = 10.0

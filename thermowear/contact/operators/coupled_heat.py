@@ -18,7 +18,7 @@ from scipy.sparse.linalg import LinearOperator, cg, gmres, splu
 from ...bulk.heat.conduction import Conduction
 from ...errors import ComputationError
 from .condensation import transfer_matrix
-from .heat import NO_HEAT_SINK, BaselineResponse, ThermalState
+from .exchange_matrix import NO_HEAT_SINK, BaselineResponse, ThermalState
 from .heat_exchange import FaceHeat, HeatExchange, InterfaceHeat, at_faces
 
 _TOLERANCE = 1e-9

@@ -1,9 +1,15 @@
-"""Matrices of the heat exchange of faces: division of conductances, coupling of the nodes."""
+"""Matrices of the heat exchange of faces: nodes, responses to heat, division of conductances.
+
+The bodies are linear and are condensed to the nodes of their contact faces once (`condensation`);
+their coupling (conductance, perfect contact, separated points) is solved with dense matrices of
+these nodes in `heat_exchange`, or without condensation in `coupled_heat`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import partial
+from dataclasses import dataclass
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import TypeAlias
 
@@ -12,8 +18,160 @@ import scipy.sparse as sp
 from scipy.linalg.lapack import dgetrf, dgetrs
 from scipy.sparse.linalg import splu
 
+from ...bulk.heat.conduction import Conduction
+from ...bulk.solvers.direct import blocks
+from ...bulk.spaces import Spaces
 from ...errors import ComputationError
-from .heat import NO_HEAT_SINK
+from ...serialise import serialisable
+
+NO_HEAT_SINK = (
+    "heat: a body is heated that nothing cools and that touches nothing, so that it has no steady "
+    "temperature; give it heat.cooling, heat.temperature, or heat.gap_conductance"
+)
+
+
+@serialisable
+@dataclass(frozen=True)
+class ThermalState:
+    """Thermal state at the contact points, shape (n,) each; index 0 is body 1.
+
+    Attributes
+    ----------
+    rise : tuple of ndarray
+        Temperature rise of each face above ambient [K].
+    flux : tuple of ndarray
+        Heat into each body [W/m²].
+    """
+
+    rise: tuple[np.ndarray, np.ndarray]
+    flux: tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class BaselineResponse:
+    """Response of the bodies without heat at the contact: given temperatures, or stored heat.
+
+    Attributes
+    ----------
+    rise : tuple of ndarray, shape (n,)
+        Temperature rise of the faces [K].
+    opening : ndarray or None, shape (m,)
+        Weak gap opened by it [m³]; None if not requested.
+    """
+
+    rise: tuple[np.ndarray, np.ndarray]
+    opening: np.ndarray | None = None
+
+    @property
+    def unheated(self) -> ThermalState:
+        """State of the faces without any heat at the contact."""
+        zeros = np.zeros(len(self.rise[0]))
+        return ThermalState(self.rise, (zeros, zeros))
+
+
+@dataclass(frozen=True)
+class FaceNodes:
+    """Nodes of the temperature on the faces of a body, or of glued ones, numbered on all ranks.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (n_mine,)
+        Owned rows of the nodes of this rank.
+    first : int
+        Number of the first of them among the n_b nodes of the body.
+    values : tuple of csr_array, shape (n, n_b)
+        P: temperature of the first and of the second face at the contact points per nodal value;
+        zero at the points of other bodies. On every rank.
+    """
+
+    rows: np.ndarray
+    first: int
+    values: tuple[sp.csr_array, sp.csr_array]
+
+    @property
+    def count(self) -> int:
+        """Number n_b of the nodes."""
+        return self.values[0].shape[1]
+
+    @property
+    def mine(self) -> slice:
+        """Numbers of the nodes of this rank."""
+        return slice(self.first, self.first + len(self.rows))
+
+    def spread(self, values: np.ndarray, n_owned: int) -> np.ndarray:
+        """Owned values of a body, shape (n_owned, k), zero off the faces, from (n_b, k) on them."""
+        result = np.zeros((n_owned, *values.shape[1:]))
+        result[self.rows] = values[self.mine]
+        return result
+
+
+def nodes_by_group(
+    spaces: Spaces, traces: tuple[sp.csr_matrix, sp.csr_matrix]
+) -> tuple[FaceNodes, ...]:
+    """Nodes on the contact faces of each group of bodies that has any, from transposed traces.
+
+    Every rank calls.
+
+    Parameters
+    ----------
+    spaces : Spaces
+        Of the temperatures.
+    traces : tuple of csr_matrix, shape (n_owned, n)
+        Transposed traces of the first and of the second faces.
+    """
+    used = np.flatnonzero(np.diff(traces[0].indptr) + np.diff(traces[1].indptr))
+    found, every = [], np.arange(spaces.owned)
+    for bodies in spaces.groups:
+        rows = np.intersect1d(used, every[spaces.rows(*bodies)])
+        parts = spaces.comm.allgather([trace[rows] for trace in traces])
+        first, second = (sp.csr_array(sp.vstack(side).T) for side in zip(*parts, strict=True))
+        if first.shape[1]:
+            before = sum(part[0].shape[0] for part in parts[: spaces.comm.rank])
+            found.append(FaceNodes(rows, before, (first, second)))
+    return tuple(found)
+
+
+class NodalResponses:
+    """Rises of the nodes of the faces per heat into them, solved for when they are first needed.
+
+    Until then their memory serves the factors with which elasticity is condensed.
+
+    Parameters
+    ----------
+    conduction : Conduction
+    nodes : tuple of FaceNodes
+        Nodes of each body.
+    """
+
+    def __init__(self, conduction: Conduction, nodes: tuple[FaceNodes, ...]):
+        self._conduction, self._nodes = conduction, nodes
+
+    @property
+    def symmetric(self) -> bool:
+        """True if the responses are symmetric."""
+        return self._conduction.symmetric
+
+    @cached_property
+    def each(self) -> tuple[np.ndarray, ...]:
+        """Φ: nodal rise per nodal heat in each body, shape (n_b, n_b) [K/W]. Every rank calls."""
+        conduction = self._conduction.for_columns()
+        found = tuple(_nodal_response(conduction, nodes) for nodes in self._nodes)
+        conduction.release()
+        return found
+
+
+def _nodal_response(conduction: Conduction, face: FaceNodes) -> np.ndarray:
+    """Rise of the nodes of a group per heat into each of them. Every rank calls."""
+    spaces, index = conduction.spaces, conduction.spaces.group_of(face.rows)
+    group, rows = conduction.in_group(index), spaces.within(index, face.rows)
+    nodes, n_owned = face.first + np.arange(len(rows)), len(group.fixed)
+    heat = sp.csc_matrix((np.ones(len(rows)), (rows, nodes)), shape=(n_owned, face.count))
+    result = np.empty((face.count, face.count), order="F")
+    for columns in blocks(face.count, spaces.dim):
+        rises = group.respond(heat[:, columns].tocsr())
+        result[:, columns] = np.vstack(spaces.comm.allgather(rises[rows]))
+    return result
+
 
 _REGULARITY = 1e-12
 """Regularisation of an infinite resistance, relative to that of the bodies: keeps heat flux

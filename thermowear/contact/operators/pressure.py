@@ -26,8 +26,7 @@ from scipy.special import comb, factorial
 
 from ...lagrange import lattice
 from ..faces.face import Face, Surface
-from ..search.contacts import Contacts
-from ..search.pairing import Pairing
+from ..search.pairing import Contacts, Pairing
 
 Basis: TypeAlias = "np.ndarray | sp.csr_array"
 _LEAST_COVERED = 0.4

@@ -15,15 +15,13 @@ from petsc4py import PETSc
 import numpy as np
 import scipy.sparse as sp
 
-from ...bulk.column_blocks import blocks
+from ...bulk.elasticity.elasticity import Elasticity, ThermalForces
 from ...bulk.heat.conduction import Conduction
-from ...bulk.mechanics.elasticity import Elasticity
-from ...bulk.mechanics.thermal_forces import ThermalForces
+from ...bulk.solvers.direct import blocks
 from ...bulk.spaces import Spaces
 from ...parallel import sum_over_ranks
-from .exchange_update import ChangedExchange
-from .face_nodes import FaceNodes
-from .heat_exchange import CoupledDistortion, HeatExchange, opened_by
+from .exchange_matrix import FaceNodes
+from .heat_exchange import ChangedExchange, CoupledDistortion, HeatExchange, opened_by
 
 Columns: TypeAlias = "slice | np.ndarray"
 

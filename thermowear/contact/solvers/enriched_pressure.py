@@ -20,7 +20,7 @@ from ...parallel import sum_over_ranks
 from ..operators.condensation import Influence
 from ..operators.pressure import Basis, dense, pressure_basis
 from ..operators.rigid_motion import RigidHolder
-from ..search.contacts import Contacts
+from ..search.pairing import Contacts
 from .signorini import solve_contact
 
 _ZERO_PRESSURE = 1e-9

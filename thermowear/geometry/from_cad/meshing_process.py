@@ -22,8 +22,8 @@ import numpy as np
 from ...errors import CaseError
 from ..reading.contents import CellBlock, MeshContents
 from ..reading.file_contents import check_file
-from .curved import CurvedPlace
 from .request import CadRequest
+from .touching import CurvedPlace
 
 ENDINGS = (".step", ".stp", ".brep")
 """Endings of CAD files."""

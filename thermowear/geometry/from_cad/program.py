@@ -17,13 +17,10 @@ from dataclasses import asdict
 
 import numpy as np
 
-from .choice import chosen_faces
-from .curved import curved_places
-from .meshing import make_mesh, mesh_arrays
+from .meshing import make_mesh, mesh_arrays, refinement, set_sizes
 from .request import CadError, CadRequest
-from .sizes import refinement, set_sizes
-from .solids import CadBody, CadFace, read_bodies
-from .touching import common_faces, touching_faces
+from .solids import CadBody, CadFace, chosen_faces, read_bodies
+from .touching import common_faces, curved_places, touching_faces
 
 Surfaces = dict[str, dict[str, list[CadFace]]]
 

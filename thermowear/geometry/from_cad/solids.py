@@ -1,7 +1,13 @@
-"""Solids and faces of CAD files in a gmsh model, in millimetres."""
+"""Solids and faces of CAD files in a gmsh model, in millimetres: labels, and chosen faces.
+
+They are the names of ``ADVANCED_FACE``. Solids and faces of the text are those of OpenCASCADE in
+the same order; that this holds for a file is tested by the corners of all faces, whose distances
+from each other depend neither on the unit nor on the position of a part in its assembly.
+"""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,8 +16,128 @@ from typing import Any
 
 import numpy as np
 
-from .request import BodyRequest, CadError
-from .step_text import labelled_solids, matched
+from .request import BodyRequest, CadError, FaceChoice, SurfaceRequest
+
+_TYPES = (
+    *("ADVANCED_FACE", "FACE_BOUND", "FACE_OUTER_BOUND", "EDGE_LOOP", "VERTEX_LOOP"),
+    *("ORIENTED_EDGE", "EDGE_CURVE", "VERTEX_POINT", "CARTESIAN_POINT"),
+    *("CLOSED_SHELL", "ORIENTED_CLOSED_SHELL", "MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS"),
+)
+_ENTITY = re.compile(rf"#(\d+)\s*=\s*({'|'.join(_TYPES)})\s*\(((?:[^';]|'(?:[^']|'')*+')*+);")
+_NAME = re.compile(r"\s*'((?:[^']|'')*+)'")
+_LABELLED = re.compile(r"(?:ADVANCED_FACE|SOLID_BREP|WITH_VOIDS)\s*\(\s*'(?!NONE')[^']")
+_REFERENCE = re.compile(r"#(\d+)")
+_NONE = ("", "NONE")
+_ALIKE = 1e-5
+"""Largest difference of sums of distances, relative to the whole, of faces that are the same."""
+
+
+@dataclass(frozen=True)
+class StepSolid:
+    """Solid of a STEP file: its name, and labels and corners of its faces.
+
+    Attributes
+    ----------
+    name : str
+        Empty without one.
+    labels : tuple of str
+    corners : tuple of ndarray, shape (n, 3)
+        In the unit of the file and the coordinates of the part.
+    """
+
+    name: str
+    labels: tuple[str, ...]
+    corners: tuple[np.ndarray, ...]
+
+
+def labelled_solids(text: str) -> list[StepSolid]:
+    """Solids of a STEP file; none if neither solids nor faces have labels."""
+    if _LABELLED.search(text) is None:
+        return []
+    entities = {int(n): (kind, rest) for n, kind, rest in _ENTITY.findall(text)}
+    solids = [
+        number
+        for number, (kind, _) in entities.items()
+        if kind in ("MANIFOLD_SOLID_BREP", "BREP_WITH_VOIDS")
+    ]
+    return [_solid(entities, number) for number in solids]
+
+
+_Entities = dict[int, tuple[str, str]]
+
+
+def _solid(entities: _Entities, number: int) -> StepSolid:
+    shells = _below(entities, number)
+    inner = [s for shell in shells for s in (_below(entities, shell) or [])]
+    faces = [f for f in inner if entities[f][0] == "ADVANCED_FACE"]
+    oriented = [s for s in inner if entities[s][0] == "CLOSED_SHELL"]  # of voids
+    faces += [f for shell in oriented for f in _below(entities, shell)]
+    return StepSolid(
+        _label(entities, number),
+        tuple(_label(entities, face) for face in faces),
+        tuple(_corners(entities, face) for face in faces),
+    )
+
+
+def _below(entities: _Entities, number: int) -> list[int]:
+    """Entities that an entity refers to."""
+    found = map(int, _REFERENCE.findall(_NAME.sub("", entities[number][1], count=1)))
+    return [other for other in found if other in entities]
+
+
+def _label(entities: _Entities, number: int) -> str:
+    found = _NAME.match(entities[number][1])
+    name = found[1].replace("''", "'").strip() if found else ""
+    return "" if name in _NONE else name
+
+
+def _corners(entities: _Entities, face: int) -> np.ndarray:
+    """Vertices of a face, shape (n, 3)."""
+    level, points = [face], dict[int, None]()
+    while level:
+        found = [other for number in level for other in _below(entities, number)]
+        points |= dict.fromkeys(n for n in found if entities[n][0] == "CARTESIAN_POINT")
+        level = [n for n in found if entities[n][0] not in ("CARTESIAN_POINT", "ADVANCED_FACE")]
+    places = [_NAME.sub("", entities[n][1], count=1) for n in points]
+    numbers = [re.findall(r"[-+.\dEe]+", place) for place in places]
+    return np.array([[float(x) for x in row[:3]] for row in numbers]).reshape(-1, 3)
+
+
+def matched(solids: list[StepSolid], found: list[tuple[np.ndarray, ...]]) -> list[StepSolid | None]:
+    """Solid of the text for each solid of OpenCASCADE; None where none has the same faces.
+
+    Solids that are alike follow each other as in the text; a part may occur several times.
+
+    Parameters
+    ----------
+    solids : list of StepSolid
+    found : list of tuple of ndarray, shape (n, 3)
+        Corners of the faces of each solid, in their order.
+    """
+    result: list[StepSolid | None] = []
+    used: dict[int, int] = {}
+    for corners in found:
+        alike = [k for k, solid in enumerate(solids) if _same(solid.corners, corners)]
+        chosen = min(alike, key=lambda k: used.get(k, 0), default=None)
+        if chosen is not None:
+            used[chosen] = used.get(chosen, 0) + 1
+        result.append(None if chosen is None else solids[chosen])
+    return result
+
+
+def _same(one: tuple[np.ndarray, ...], other: tuple[np.ndarray, ...]) -> bool:
+    """Test for faces with the same distances of their corners, in the same order."""
+    if [len(x) for x in one] != [len(x) for x in other]:
+        return False
+    a, b = (np.array([_spread(x) for x in corners]) for corners in (one, other))
+    scale = [max(x.sum(), np.finfo(float).tiny) for x in (a, b)]
+    return bool(np.all(np.abs(a / scale[0] - b / scale[1]) < _ALIKE))
+
+
+def _spread(points: np.ndarray) -> float:
+    """Sum of all distances of some points from each other."""
+    return float(np.linalg.norm(points[:, None] - points, axis=2).sum())
+
 
 UNIT = 1e-3
 """Length in which OpenCASCADE computes, as its tolerances are absolute [m]."""
@@ -264,3 +390,133 @@ def listed(words: Iterable[object]) -> str:
 
 def _count(number: int, what: str) -> str:
     return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+_NEAR = 0.01
+"""Largest distance of a point from its face, relative to the size of the body."""
+_SAME = 1e-4
+"""Distance relative to the size of a body below which places coincide."""
+_ALONG = 1e-4
+"""Largest sine of the angle between the normals of a face and its plane."""
+_ACROSS = 4
+"""Points along each parameter of a face at which it is compared with a plane."""
+
+
+def chosen_faces(
+    gmsh, surface: SurfaceRequest, bodies: dict[str, CadBody]
+) -> dict[str, list[CadFace]]:
+    """Faces of a named surface by body.
+
+    Raises
+    ------
+    CadError
+        If a choice finds no face, or several where it needs one; with those that there are.
+    """
+    found: dict[int, CadFace] = {}
+    for choice in surface.choices:
+        names = [name for name in (surface.body, choice.body) if name is not None]
+        unknown = [name for name in names if name not in bodies]
+        if unknown:
+            raise CadError(f"{surface.key}.body: unknown body; must be one of: {', '.join(bodies)}")
+        among = [bodies[name] for name in bodies if set(names) <= {name}]
+        try:
+            found |= {face.tag: face for face in _faces(gmsh, surface.key, choice, among)}
+        except CadError as error:
+            reason = f"; {surface.reason}" if surface.reason else ""
+            raise CadError(f"{error}{reason}") from None
+    result: dict[str, list[CadFace]] = {}
+    for face in found.values():
+        result.setdefault(face.body, []).append(face)
+    return result
+
+
+def _faces(gmsh, key: str, choice: FaceChoice, among: list[CadBody]) -> Sequence[CadFace]:
+    if not among:
+        raise CadError(f"{key}.body: this surface belongs to another body")
+    if choice.label is not None:
+        return _labelled(key, choice.label, among)
+    if choice.point is not None:
+        return [_nearest(gmsh, key, np.array(choice.point) / UNIT, among)]
+    assert choice.plane is not None
+    normal, offset = choice.plane
+    return _in_plane(gmsh, key, np.array(normal), offset / UNIT, among)
+
+
+def _labelled(key: str, label: str, among: list[CadBody]) -> list[CadFace]:
+    every = [face for body in among for face in body.faces]
+    found = [face for face in every if face.label == label]
+    if not found:
+        labels = sorted({face.label for face in every} - {""})
+        have = f"labels: {listed(labels)}" if labels else "none of them has a label"
+        raise CadError(
+            f"{key}: no face labelled {label!r}; {_counted(among)}; {have}; a face is also named "
+            'by { point = ["0 mm", "0 mm", "5 mm"] } or { plane = "z", at = "5 mm" }'
+        )
+    return found
+
+
+def _nearest(gmsh, key: str, place: np.ndarray, among: list[CadBody]) -> CadFace:
+    """Face that a point lies on."""
+    size = max(body.size for body in among)
+    every = [face for body in among for face in body.faces]
+    boxes = np.array([face.box for face in every])
+    beyond = np.maximum(np.maximum(boxes[:, 0] - place, place - boxes[:, 1]), 0.0)
+    least = np.linalg.norm(beyond, axis=1)
+    measured: list[tuple[float, CadFace]] = []
+    for k in np.argsort(least, kind="stable"):
+        if len(measured) > 1 and least[k] > measured[1][0]:
+            break
+        measured.append((distance(gmsh, place, (2, every[k].tag)), every[k]))
+        measured.sort(key=lambda pair: pair[0])
+    (near, face), *others = measured
+    where = in_mm(place)
+    if near > _NEAR * size:
+        raise CadError(
+            f"{key}: no face near the point {where}; the nearest one is the {face}, {near:.4g} mm "
+            f"away; {_counted(among)}"
+        )
+    equal = [other for gap, other in others if gap <= near + _SAME * size]
+    if equal:
+        raise CadError(
+            f"{key}: {1 + len(equal)} faces are equally near the point {where}: "
+            f"{listed([face, *equal])}; name a point inside one of them"
+            + (", or its body" if any(other.body != face.body for other in equal) else "")
+        )
+    return face
+
+
+def _in_plane(
+    gmsh, key: str, normal: np.ndarray, offset: float, among: list[CadBody]
+) -> list[CadFace]:
+    """Plane faces that lie in a plane."""
+    size = max(body.size for body in among)
+    heights = {
+        face: height
+        for body in among
+        for face in body.faces
+        if (height := _height(gmsh, face, normal, _SAME * size)) is not None
+    }
+    found = [face for face, height in heights.items() if abs(height - offset) <= _SAME * size]
+    if not found:
+        others = sorted({f"{height:.6g}" for height in heights.values()}, key=float)
+        have = f"at {listed(others)} mm" if others else "nowhere"
+        raise CadError(
+            f"{key}: no face in the plane at {offset:.6g} mm; {_counted(among)}, parallel to this "
+            f"plane {have}"
+        )
+    return found
+
+
+def _height(gmsh, face: CadFace, normal: np.ndarray, tolerance: float) -> float | None:
+    """Position of a plane face along a normal [mm]; None if it is not normal to it."""
+    places = parameters(gmsh, face, _ACROSS).ravel()
+    normals = gmsh.model.getNormal(face.tag, places).reshape(-1, 3)
+    if np.linalg.norm(np.cross(normals, normal), axis=1).max() > _ALONG:
+        return None
+    heights = gmsh.model.getValue(2, face.tag, places).reshape(-1, 3) @ normal
+    return float(heights.mean()) if np.ptp(heights) <= tolerance else None
+
+
+def _counted(among: list[CadBody]) -> str:
+    """Number of faces of bodies, for messages."""
+    return " and ".join(f"{body.name!r} has {len(body.faces)} faces" for body in among)

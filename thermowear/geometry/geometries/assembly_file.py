@@ -19,7 +19,7 @@ from ...case.values.json_schema import LIST_OF_NAMES, OrAlso
 from ...case.values.section import MODEL, KeyFault, UserFile
 from ...case.values.units import Length
 from ..checks.assembly_checks import check_assembly
-from ..reading.named import Named
+from ..reading.contents import Named
 from .mesh_file import CellSets, CurvedSurfaces, FromFiles, curved_surfaces
 
 _KEYS = {"body_names": "bodies", "surface_names": "surfaces"}

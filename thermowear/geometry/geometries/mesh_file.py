@@ -25,8 +25,8 @@ from ..checks.pair_checks import check_pair
 from ..checks.solid_pairs import projected_area
 from ..checks.solid_surfaces import check_solid_mesh
 from ..mesh.mixed import AnyMesh
-from ..reading.bodies import has_surface, read_bodies
-from ..reading.named import Named
+from ..reading.assembly import has_surface, read_bodies
+from ..reading.contents import Named
 
 _KEYS = {
     "body_names": "bodies",

@@ -28,8 +28,7 @@ from ..meshing.cells import (
     tagged_bodies,
 )
 from ..meshing.divisions import face_ends, growth, row_ratio
-from ..meshing.polar import Polar
-from ..meshing.rings import Disc, RectangularOutline, ringed_body
+from ..meshing.rings import Disc, Polar, RectangularOutline, ringed_body
 
 _THINNEST = 1e-6
 """Least contact width relative to the block's half width: 10 000 times the tolerance for positions

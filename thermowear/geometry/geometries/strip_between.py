@@ -19,7 +19,7 @@ from ...case.values.units import Distance, Length
 from ...errors import CaseError
 from ..checks.assembly_checks import check_drawn
 from ..mesh.tagged import TaggedMesh
-from ..meshing.mirrored import mirrored
+from ..meshing.stacked_layers import mirrored
 from .on_block import CylinderOnBlock
 from .on_strip import PunchOnStrip
 

@@ -1,20 +1,25 @@
-"""Conversion of the contents of a mesh file to a tagged mesh, by names of bodies and surfaces.
+"""Conversion of the contents of mesh files to a tagged mesh of named bodies.
 
 Bodies consist of one or several cell sets of the file, and may have parts by cell sets.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 
 from ...errors import CaseError
 from ..checks.mesh_checks import oriented
 from ..checks.solid_checks import oriented_solid
+from ..mesh.curved import curved
 from ..mesh.mixed import AnyMesh, of_blocks, retagged
 from ..mesh.nodes import boundary, centre, facet_nodes, numbered
 from ..mesh.tagged import TaggedMesh, compact
-from .contents import CellBlock, MeshContents
-from .named import TYPES, Named, facets_of
+from .contents import TYPES, CellBlock, MeshContents, Named, facets_of, joined
+from .file_contents import read_contents
 
 _ORDERS = {
     "triangle": {3: 1, 6: 2, 10: 3},
@@ -252,3 +257,85 @@ def divided(
         tags[cells] = len(mesh.bodies) + number
     names = (*mesh.bodies, *(part.name for part in sets))
     return retagged(mesh, tags, names)
+
+
+def read_bodies(
+    path: str | None,
+    paths: Mapping[str, str],
+    dim: int,
+    length_unit: float,
+    cells: Mapping[str, tuple[str, ...]],
+    surfaces: Sequence[Named],
+    with_material: Mapping[str, Mapping[str, str]],
+    smooth: Sequence[str] = (),
+) -> AnyMesh:
+    """Read bodies, the nodes of each apart from those of the others.
+
+    Parameters
+    ----------
+    path : str or None
+        File of all bodies.
+    paths : mapping of str to str
+        Files by body instead, in the order of the bodies.
+    dim : int
+        Dimension of the bodies.
+    length_unit : float
+        Length of one unit of the files [m].
+    cells : mapping of str to tuple of str
+        Cell sets of each body.
+    surfaces : sequence of Named
+    with_material : mapping of str to mapping of str to str
+        Cell sets that become parts of their own, by body, with the paths of their tables.
+    smooth : sequence of str
+        Surfaces that are curved, see `curved.curved`.
+
+    Raises
+    ------
+    CaseError
+        One line, reported at the key at fault.
+    """
+    contents = _contents(path, {body: paths[body] for body in cells if paths}, dim)
+    contents = replace(contents, points=contents.points * length_unit)
+    mesh = bodies_in(contents, cells, surfaces, with_material)
+    return curved(mesh, smooth, "geometry.curved") if smooth else mesh
+
+
+def has_surface(name: str, path: str | None, paths: Mapping[str, str], dim: int) -> bool:
+    """Test whether files can be read and name a surface, see `read_bodies`."""
+    try:
+        contents = _contents(path, paths, dim)
+    except CaseError:
+        return False
+    return contents.spelled(name) in (*contents.names(dim - 1), *contents.node_sets)
+
+
+def bodies_in(
+    contents: MeshContents,
+    cells: Mapping[str, tuple[str, ...]],
+    surfaces: Sequence[Named],
+    with_material: Mapping[str, Mapping[str, str]],
+) -> AnyMesh:
+    """Mesh of bodies from contents in metres, see `read_bodies`."""
+
+    def in_file(parts: Iterable[Named]) -> list[Named]:
+        return [replace(of, sets=tuple(map(contents.spelled, of.sets))) for of in parts]
+
+    bodies = [
+        Named(body, sets, f"geometry.bodies.{body}", index)
+        for index, (body, sets) in enumerate(cells.items())
+    ]
+    parts = [
+        Named(f"{body}.{name}", (name,), key, index)
+        for index, body in enumerate(cells)
+        for name, key in with_material.get(body, {}).items()
+    ]
+    bodies, parts = in_file(bodies), in_file(parts)
+    return divided(assemble(contents, bodies, in_file(surfaces)), contents, bodies, parts)
+
+
+def _contents(path: str | None, paths: Mapping[str, str], dim: int) -> MeshContents:
+    """Contents of the file, or of those of all bodies."""
+    if path is not None:
+        return read_contents(Path(path), dim)
+    each = [read_contents(Path(of), dim, f"geometry.paths.{b}") for b, of in paths.items()]
+    return joined(each)

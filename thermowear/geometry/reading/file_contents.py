@@ -23,7 +23,7 @@ import numpy as np
 from ...errors import CaseError
 from .abaqus import read_abaqus
 from .contents import VTK_ORDER, CellBlock, MeshContents, shown
-from .gmsh_file import read_gmsh
+from .gmsh import read_gmsh
 
 _MARK = b"\xef\xbb\xbf"
 """Byte order mark of UTF-8."""

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..distribution import Distribution
 from ..motions import RigidMotion, spatial
-from ..power_wear import PowerWear
+from ..wear import PowerWear
 from .steady import SteadyWear, steady_pressure
 
 

@@ -13,7 +13,7 @@ from pydantic import Strict, TypeAdapter, ValidationError
 
 from ..files import read_object, write_text, writing
 from ..folder import finite, write_json
-from ..study.tables import read_cells
+from ..study.folder import read_cells
 from ..tables import write_csv
 from ..variants.folder import BatchFolder, is_final, numbers_in
 

@@ -10,9 +10,8 @@ from ...errors import CaseError
 from ...results.quantity import Quantity
 from ..files import read_object
 from ..report import write_report
-from ..report.contents import embedded
+from ..report.contents import ShownTable, embedded
 from ..report.figures import NOTHING, Figure, number, table_lines, verdict
-from ..report.shown_tables import ShownTable
 from .folder import CALIBRATED, PICTURES, RESOLVED, read_calibration
 
 _MOST = 60

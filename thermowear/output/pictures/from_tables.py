@@ -8,8 +8,7 @@ from pathlib import Path
 from ..files import contacts_of, name_at, picture
 from ..tables import MissingColumnError
 from . import curves, maps, over_time
-from .hot_spots import draw_hot_spots
-from .modes import draw_modes
+from .modes import draw_hot_spots, draw_modes
 
 _ALONG_A_LINE: dict[str, Callable[..., None]] = {
     "interface": curves.draw_interface,

@@ -12,10 +12,9 @@ import numpy as np
 
 from ...balances import violated
 from ...errors import CaseError, ComputationError
-from ...geometry.mesh.mixed import AnyMesh
-from ...geometry.mesh.outside import outside
+from ...geometry.mesh.mixed import AnyMesh, outside
 from ..files import contacts_of, name_at, read_summary
-from ..hot_spot_solid import HOT_SPOTS
+from ..frames import HOT_SPOTS
 from ..rendering import PictureJob, Renderer, attempt
 from .kinds import FPS, has_frames, is_surface
 

@@ -1,4 +1,3 @@
 """Pictures of bodies by VTK, in a process of their own that may crash."""
 
-from .jobs import PictureJob, attempt
-from .renderer import Renderer
+from .renderer import PictureJob, Renderer, attempt

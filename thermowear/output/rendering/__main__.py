@@ -11,7 +11,7 @@ from contextlib import ExitStack, suppress
 from functools import cache
 
 from .display import display
-from .jobs import WARM_UP, attempt
+from .renderer import WARM_UP, attempt
 
 
 def serve() -> None:

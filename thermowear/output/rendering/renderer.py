@@ -1,4 +1,4 @@
-"""Process that draws with VTK, seen from the program."""
+"""Process that draws with VTK, seen from the program, and its jobs."""
 
 from __future__ import annotations
 
@@ -7,14 +7,63 @@ import os
 import signal
 import subprocess
 import sys
+import traceback
 from collections.abc import Sequence
 from contextlib import suppress
+from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryFile
 from threading import Event, Timer
+from typing import NamedTuple
 
 from .display import ending_with_parent
-from .jobs import PictureJob
+
+WARM_UP = ("warm up", ())
+"""Kind and arguments of a drawing that loads what all others need."""
+_DRAWN_BY = {
+    WARM_UP[0]: ("in_space.solids", "warm_up"),
+    "bodies": ("bodies", "draw_bodies"),
+    "hot spots": ("in_space.hot_spot_views", "draw_views"),
+    "animation": ("animation", "draw_animation"),
+    "mesh": ("in_space.mesh", "draw_mesh"),
+    "contacts": ("from_tables", "draw_other_contacts"),
+}
+"""Module of the pictures, imported only where it draws, and function of each kind."""
+
+
+class PictureJob(NamedTuple):
+    """Pictures of one kind.
+
+    Attributes
+    ----------
+    kind : str
+    arguments : tuple of (str or float)
+        Absolute paths as strings, and numbers.
+    in_space : bool
+        True for pictures that need VTK.
+    timeout : float
+        Time after which drawing is given up [s].
+    apart : bool
+        True for pictures drawn in another process though they need no VTK.
+    """
+
+    kind: str
+    arguments: tuple[str | float, ...]
+    in_space: bool = True
+    timeout: float = 180.0
+    apart: bool = False
+
+
+def attempt(kind: str, arguments: tuple[str | float, ...]) -> str:
+    """Draw pictures in this process; returns the reason of a failure, empty on success."""
+    module, function = _DRAWN_BY[kind]
+    try:
+        draw = getattr(import_module(f"...pictures.{module}", __name__), function)
+        draw(*(Path(each) if isinstance(each, str) else each for each in arguments))
+    except Exception as error:
+        return traceback.format_exception_only(error)[-1].strip().splitlines()[-1]
+    return ""
+
 
 _MODULE = __package__
 _ROOT = Path(__file__).parents[3]

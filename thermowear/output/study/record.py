@@ -10,9 +10,9 @@ import numpy as np
 
 from ...results.quantity import Quantity, multiple
 from ..files import model_of, read_object
-from ..variants.numbers import quantity_at
+from ..variants.folder import quantity_at
 from ..variants.units import in_pictures
-from .tables import COLUMNS, QUANTILES, SAMPLE, SOBOL, TORNADO, read_cells
+from .folder import COLUMNS, QUANTILES, SAMPLE, SOBOL, TORNADO, read_cells
 
 _MAIN = (
     *("max_pressure_Pa", "shape_range_m", "max_temperature_K", "peak_temperature_K"),

@@ -1,5 +1,5 @@
 """Results of a parameter sweep: folders of the variants, one table, two pictures."""
 
 from .folder import SweepFolder, is_sweep
-from .keys import swept
+from .layout import swept
 from .pictures import draw_sweep

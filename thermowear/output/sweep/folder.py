@@ -8,9 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from ..files import is_ours
-from ..variants.folder import VariantsFolder
-from ..variants.numbers import numbers_of
-from .keys import Swept
+from ..variants.folder import VariantsFolder, numbers_of
+from .layout import Swept
 
 _VARIANT = re.compile(r"\d{3,}")
 

@@ -24,7 +24,7 @@ from ..pictures.panels import (
     panels,
     plot_along,
 )
-from ..variants.numbers import MAIN
+from ..variants.folder import MAIN
 from .layout import (
     LINES,
     Layout,

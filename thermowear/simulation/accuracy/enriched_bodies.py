@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
+from ...bulk.elasticity.elasticity import fixed_values
+from ...bulk.elasticity.enriched import EnrichedProblem, cells_near, surplus_spaces
 from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.heat_equation import (
     conducting,
@@ -22,18 +24,14 @@ from ...bulk.heat.heat_equation import (
     surface_heat,
     transferring,
 )
-from ...bulk.mechanics.elasticity import fixed_values
-from ...bulk.mechanics.enriched import EnrichedProblem, cells_near
-from ...bulk.mechanics.surplus import surplus_spaces
-from ...contact.operators.heat import BaselineResponse
+from ...contact.operators.condensation import face_traces, gap_trace, vector_trace
+from ...contact.operators.exchange_matrix import BaselineResponse
 from ...contact.operators.heat_exchange import InterfaceHeat
 from ...contact.operators.pressure import dense, scaled
-from ...contact.operators.traces import face_traces, gap_trace, vector_trace
 from ...model.conditions import Heat
 from ...parallel import sum_over_ranks
 from ..heat.friction_heat import TemperatureField
-from ..interface.body_state import BodyState
-from ..interface.equilibrium import ContactState
+from ..interface.body_state import BodyState, ContactState
 from ..system.rigid_modes import fluid_pressure, surface_loads
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem, conducting_parts, cooling

@@ -10,8 +10,7 @@ import numpy as np
 from ...contact.faces.rim import near_chosen, on_edges, rim
 from ...contact.operators.pressure import dense, jumps, scaled
 from ...contact.operators.rigid_motion import RigidHolder
-from ...contact.search.contacts import Contacts
-from ...contact.search.pairing import PairedFace
+from ...contact.search.pairing import Contacts, PairedFace
 from ...contact.solvers.signorini import resisted
 from ...errors import CaseError, ComputationError, percent
 from ...geometry.checks.mesh_checks import length

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...bulk.body_mesh import BodyMesh
+from ...bulk.bodies import BodyMesh
 from ...geometry.checks.mesh_checks import length
 from ..geometry_update.outer_loop import thickness_at
 from ..results.recording import Samples, Snapshot

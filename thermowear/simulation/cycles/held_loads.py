@@ -1,21 +1,60 @@
-"""Motions of the holders in stick-slip, and their loads along the load histories."""
+"""Motions of the holders in stick-slip, their loads, and the frictional contact under them."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from ...contact.friction.frictional_contact import FrictionalContact, condense_tangential
 from ...contact.friction.stick_slip_state import Loads
-from ...contact.operators.tangential import HeldMotion
+from ...contact.full.full_friction import full_friction
+from ...contact.operators.rigid_motion import HeldMotion
 from ...errors import CaseError
+from ...laws.histories import TANGENTIAL, LoadHistories
 from ...laws.motions import RigidMotion, combined, rotation, translation
-from ...laws.time_course import TANGENTIAL, LoadHistories
 from ...model.conditions import Holder
+from ..interface.full_method import contact_stiffness
 from ..system.rigid_modes import applied
 from ..system.system import System
+
+
+def frictional_contact_of(
+    system: System,
+    held: Sequence[HeldMotion],
+    frame: np.ndarray,
+    note: Callable[[str], None] | None = None,
+) -> FrictionalContact:
+    """Frictional contact of a system. Every rank calls.
+
+    Parameters
+    ----------
+    system : System
+    held : sequence of HeldMotion
+        Motions of the holders.
+    frame : ndarray, shape (t, n, gdim)
+        Tangential directions, see `tangential_frame`.
+    note : callable, optional
+        Receives a warning about parameters of the method out of range.
+
+    Raises
+    ------
+    CaseError
+        If the method knows no stick and slip.
+    """
+    method = system.model.method
+    if method == "pointwise":
+        raise CaseError('contact.method: "pointwise" does not support a fretting analysis')
+    operators = system.elastic, system.contacts, system.basis, held, frame
+    if method == "condensed":
+        with system.phases("condense elasticity"):
+            return condense_tangential(*operators)
+    theta = system.model.interface.method.theta if method == "nitsche" else None
+    stiffness = contact_stiffness(system, note)
+    return full_friction(*operators, stiffness, theta)
+
 
 _PARALLEL = 1.0 - 1e-9
 """Cosine between load direction and x from which they are parallel."""

@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...contact.search.pairing import Pairing
-from ...contact.wear.swept_surface import SweptSurface
-from ...contact.wear.track import StrokeGrid
+from ...contact.wear.worn_profile import StrokeGrid, SweptSurface
 from ...model.analyses import ReciprocatingAnalysis
 from ...results import ContactRow, HistoryRow, WornTrack
 from ..interface.body_state import contact_state
@@ -19,7 +18,7 @@ from ..results.recording import Snapshot, snapshot
 from ..runtime.history import AnalysisHistory
 from ..runtime.observer import Observer
 from ..system.system import System
-from ..time.time_loop import AnySize, Moment, moments
+from ..time_loop import AnySize, Moment, moments
 from .reciprocating_problem import ReciprocatingProblem
 from .stroke import positions, strokes
 

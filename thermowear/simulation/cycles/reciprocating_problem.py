@@ -1,4 +1,4 @@
-"""Cycle-averaged contact and wear in reciprocating sliding.
+"""Cycle-averaged contact and wear in reciprocating sliding, and its distance from the steady state.
 
 The wear of one cycle is small, so that depths are constant during a cycle. The carrying body, 1,
 loses W1 at its points x, the swept one, 2, loses W2 at its points ξ. At each position X_j the
@@ -10,8 +10,8 @@ and the rates, averaged over the cycle with time shares c_j, follow from the loc
 
     W1'(x) = Σ_j c_j κ1 p_j(x)^b |v_j|^a,      W2'(ξ) = Σ_j c_j κ2 p_j(ξ - X_j)^b |v_j|^a
 
-W1 has coefficients in the pressure basis, like fretting wear; for W2 see `contact.wear.track`, in
-space `contact.wear.swept_surface`.
+W1 has coefficients in the pressure basis, like fretting wear; for W2 see
+`contact.wear.worn_profile`.
 
 Steady state. Steady pressures need ``W1'(x) + W2'(x + X) = V(X)`` wherever the faces touch, V being
 the approach rate of a holder that does not rotate. The derivative along x gives
@@ -20,12 +20,16 @@ symmetric stroke. Both rates are then uniform for any pressures, and for ``a = b
 determines them: with the mean speed v, the half-width h and the thickness t of body 1, and the
 amplitude A, ``W1' = κ1 F v / (2 h t)`` and ``W2' = κ2 F v / (2 (h + A) t)``.
 
+The ends of the faces are left out of the distance from it: at the turning points the edge of the
+carrying body carries half the load, which no mesh resolves.
+
 In space the same holds on each line along the stroke, and ``W1' + W2' = V`` on all of them. With
 the length l of the face on a line ``V = F v / ∫ dy / (κ1/l + κ2/(l + 2 A))``.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -35,15 +39,92 @@ from ...contact.search.pairing import Pairing
 from ...contact.solvers.coupled_positions import CoupledSolution, solve_coupled
 from ...contact.solvers.signorini import solve_contact
 from ...contact.wear.implicit_step import Slope, newton_with_wear
-from ...contact.wear.swept_surface import SweptSurface, swept_surface
-from ...contact.wear.track import StrokeGrid, StrokeGrids, track
+from ...contact.wear.worn_profile import StrokeGrid, StrokeGrids, SweptSurface, swept_surface, track
 from ...errors import ComputationError
-from ..interface.contact_solver import ContactSolution
+from ..interface.condensed_method import ContactSolution
 from ..interface.sdirk import InterfaceState, WearProblem
 from ..system.system import System
-from .stroke import Position, condensed, stroke_distribution
-from .stroke_wear import CycleContact, local_wear
-from .unevenness import unevenness
+from .stroke import CycleContact, Position, condensed, local_wear, stroke_distribution
+
+_INNER = 0.9
+"""Part of the faces that is compared."""
+
+Unevenness = Callable[[np.ndarray, np.ndarray], float]
+"""Largest relative deviation of wear rates from their mean, of the coefficients of the carrying
+bodies (m,) and the nodal values of the swept ones (n_nodes,)."""
+
+
+def unevenness(
+    system: System, stroke: list[Position], track: StrokeGrids, functions: tuple[slice, ...]
+) -> Unevenness:
+    """Measure of the distance from the steady state of a stroke.
+
+    In a section the rates of each face are compared with their mean; in space, where they depend on
+    the length of the face along the stroke, the sums of opposite points in all positions with their
+    mean, relative to the mean rate of the face that wears less.
+
+    Parameters
+    ----------
+    system : System
+        Bodies in the middle of the stroke.
+    stroke : list of Position
+    track : StrokeGrids
+    functions : tuple of slice
+        Range of the coefficients of each interface.
+    """
+    if system.contacts.in_space:
+        return _by_closing(stroke, track)
+    weighted = dense(system.contact.weighted)
+    position = np.concatenate([pairing.carrying.position for pairing in system.contacts.each])
+    places = (position @ weighted) / weighted.sum(axis=0)
+    on_1 = [(own, places[own]) for own in functions]
+    grids = zip(track.ranges, track.each, strict=True)
+    on_2 = [(own, grid.position) for own, grid in grids if isinstance(grid, StrokeGrid)]
+
+    def measure(rates_1: np.ndarray, rates_2: np.ndarray) -> float:
+        parts = [(rates_1[own], at) for own, at in on_1]
+        parts += [(rates_2[own], at) for own, at in on_2]
+        return max(_deviation(rate[_within(at)]) for rate, at in parts if rate.any())
+
+    return measure
+
+
+def _by_closing(stroke: list[Position], track: StrokeGrids) -> Unevenness:
+    """Measure by the closing rates at the contact points of each interface in space."""
+    systems = {position.offset: position.system for position in stroke}  # one of both directions
+    rows = []
+    for offset, system in systems.items():
+        hats = track.hats(system.contacts)
+        parts = zip(track.each, system.contacts, track.strokes, strict=True)
+        for index, (grid, (pairing, points), ratio) in enumerate(parts):
+            assert isinstance(grid, SweptSurface)
+            inner = (
+                np.flatnonzero(
+                    grid.inner(pairing, ratio * offset * (-1) ** pairing.carrier, _INNER)
+                )
+                + points.start
+            )
+            rows.append((index, system.basis[inner], hats[inner]))
+
+    def measure(rates_1: np.ndarray, rates_2: np.ndarray) -> float:
+        found = []
+        for index in range(len(track.each)):
+            own = [(on_1 @ rates_1, on_2 @ rates_2) for k, on_1, on_2 in rows if k == index]
+            both = np.hstack(own)
+            means = both.mean(axis=1)
+            least = means[means > 0.0].min()
+            found.append(float(np.abs(both.sum(axis=0) - means.sum()).max() / least))
+        return max(found)
+
+    return measure
+
+
+def _within(place: np.ndarray) -> np.ndarray:
+    return np.abs(place - (place[0] + place[-1]) / 2) <= _INNER * (place[-1] - place[0]) / 2
+
+
+def _deviation(rates: np.ndarray) -> float:
+    return float(np.abs(rates / rates.mean() - 1).max())
 
 
 class ReciprocatingProblem(WearProblem):

@@ -27,9 +27,8 @@ from ...case.values.pressing import Pressing
 from ...case.values.section import Section
 from ...errors import CaseError
 from ...geometry.mesh.mixed import AnyMesh
-from ...laws.coefficients import Multipliers
 from ...laws.distribution import IN_PLACE, Distribution
-from ...laws.interfaces import Law
+from ...laws.interfaces import Law, Multipliers
 from ...model.body import Body, Material
 from ...model.conditions import Heat, Holder, Motion
 from ...model.face_wear import Wear

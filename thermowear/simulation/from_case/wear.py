@@ -10,8 +10,7 @@ from ...case.tables.geometry import Geometry
 from ...case.tables.materials import part_named
 from ...case.tables.wear import BodyWearTable, RateTable
 from ...laws.distribution import IN_PLACE, Distribution
-from ...laws.layered_wear import LayeredWear
-from ...laws.power_wear import PowerWear
+from ...laws.wear import LayeredWear, PowerWear
 from ...model.face_wear import CompositeWear, FaceWear, Wear
 from ...model.tracks import Track
 

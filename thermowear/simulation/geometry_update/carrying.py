@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...bulk.transfer import transferred
+from ...bulk.points import transferred
 from ..interface.sdirk import InterfaceState
 from ..system.system import System
 

@@ -37,8 +37,16 @@ from .moving_faces import (
     parts_behind,
     worst_cell,
 )
-from .refill import Kept, on_kept_faces, refilled
-from .remesh import FLOOR, Renewed, carrying_error, on_new_faces, redivided
+from .remesh import (
+    FLOOR,
+    Kept,
+    Renewed,
+    carrying_error,
+    on_kept_faces,
+    on_new_faces,
+    redivided,
+    refilled,
+)
 
 serialisable(WornGeometry)
 serialisable(WornContact)

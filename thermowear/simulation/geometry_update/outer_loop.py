@@ -26,12 +26,12 @@ from ...parallel import on_root
 from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.sdirk import InterfaceState
 from ..interface.steady import SteadyState
-from ..results.cell_grids import GRIDS
+from ..results.recording import GRIDS
 from ..runtime.observer import Observer
 from ..system.building import build
 from ..system.setup_cache import SetupCache
 from ..system.system import System
-from ..time.time_loop import Moment, StepSizes, is_over, is_steady, moments
+from ..time_loop import Moment, StepSizes, is_over, is_steady, moments
 from .geometry_update import settled, updated
 from .moving_faces import (
     KEPT,

@@ -9,8 +9,12 @@ import numpy as np
 
 from ...bulk.heat.conduction import Conduction
 from ...contact.operators.coupled_heat import AnyExchange, AnyFace
-from ...contact.operators.exchange_update import ReferenceExchange
-from ...contact.operators.heat_exchange import CoupledDistortion, HeatExchange, InterfaceHeat
+from ...contact.operators.heat_exchange import (
+    CoupledDistortion,
+    HeatExchange,
+    InterfaceHeat,
+    ReferenceExchange,
+)
 from ...contact.operators.thermal_opening import ThermalDistortion, condense_distortion
 from ..system.setup_cache import SetupCache
 from ..system.system import System

@@ -8,12 +8,12 @@ from functools import cached_property
 import numpy as np
 
 from ...balances import relative
-from ...contact.operators.heat import BaselineResponse, ThermalState
+from ...contact.operators.exchange_matrix import BaselineResponse, ThermalState
 from ...contact.operators.heat_exchange import InterfaceHeat
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
 from ..system.thermal_system import ThermalSystem
-from . import heat_by_body
+from . import heat_steps
 from .heat_steps import ROUNDING, HeatBalance, HeatStep, HeatSteps, StoredHeat
 from .varying_heat import VaryingHeatSteps
 
@@ -108,7 +108,7 @@ class FrictionHeat:
         rise = np.where(conduction.fixed, conduction.prescribed, self._thermal.initial)
         baseline = self.steps.operators.baseline(rise)
         largest = max(float(np.abs(baseline.rise).max()), self.steps.largest(rise))
-        nothing = np.zeros(3 + 2 * heat_by_body.tracked_bodies(self._system))
+        nothing = np.zeros(3 + 2 * heat_steps.tracked_bodies(self._system))
         stored = StoredHeat(rise, conduction.stored_heat(rise), nothing, largest)
         return InitialHeat(stored, baseline)
 
@@ -150,21 +150,21 @@ class FrictionHeat:
         if made + load.magnitude == 0.0:  # the turnover may be at rounding level
             scale = max(scale, conduction.balance_scale(rise))
         error = relative(lost - made - load.prescribed, scale)
-        net = heat_by_body.into_bodies(self._system, self._thermal, faces, rise, load)
-        return TemperatureField(faces, rise, error, heat_by_body.errors(*net))
+        net = heat_steps.into_bodies(self._system, self._thermal, faces, rise, load)
+        return TemperatureField(faces, rise, error, heat_steps.body_balance_errors(*net))
 
     def transient(self, stored: StoredHeat, faces: ThermalState) -> TemperatureField:
         """Transient temperatures, with the error of the heat balance since the start."""
         net, sizes = np.split(stored.turnover[3:], 2)
         gains, before = self._gains(stored), np.abs(self.initial.stored.content)[None]
-        sizes = sizes + np.abs(gains) + ROUNDING * heat_by_body.of_bodies(self._system, before)[0]
-        errors = heat_by_body.errors(net - gains, sizes)
+        sizes = sizes + np.abs(gains) + ROUNDING * heat_steps.of_bodies(self._system, before)[0]
+        errors = heat_steps.body_balance_errors(net - gains, sizes)
         return TemperatureField(faces, stored.rise, self._balance(stored).error, errors)
 
     def _gains(self, stored: StoredHeat) -> np.ndarray:
         """Heat stored in each body since the start, (n_bodies,) [J]; (0,) for a pair."""
         gained = (stored.content - self.initial.stored.content)[None]
-        return heat_by_body.of_bodies(self._system, gained)[0]
+        return heat_steps.of_bodies(self._system, gained)[0]
 
     def _balance(self, stored: StoredHeat) -> HeatBalance:
         return stored.balance(self.initial.stored, self._system.comm)

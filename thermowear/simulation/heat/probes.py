@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import scipy.sparse as sp
 
-from ...bulk.points.point_values import point_rows
+from ...bulk.points import point_rows
 from ...parallel import sum_over_ranks
 from ...results import ProbeRow
 from ..points.probe_points import probe_points

@@ -15,13 +15,12 @@ import numpy as np
 from ...bulk.heat.conduction import Conduction
 from ...bulk.heat.varying import VaryingExpansion
 from ...contact.operators.condensation import condense_heat
-from ...contact.operators.heat import BaselineResponse, ThermalState
+from ...contact.operators.exchange_matrix import BaselineResponse, ThermalState
 from ...contact.operators.heat_exchange import baseline_response
 from ...errors import ComputationError
 from ..system.conditions import InterfaceConditions
 from ..system.system import System
-from ..system.thermal_loads import ThermalLoad
-from ..system.thermal_system import ThermalSystem
+from ..system.thermal_system import ThermalLoad, ThermalSystem
 from .heat_steps import AnyFace, HeatOperators, HeatStep, HeatSteps
 
 _ITERATIONS = 60

@@ -6,11 +6,10 @@ import numpy as np
 from dolfinx import fem
 from dolfinx.mesh import entities_to_geometry
 
-from ...bulk.field import as_function
-from ...laws.wave_modes import WaveMode
+from ...bulk.spaces import as_function
+from ...laws.waves import WaveMode
 from ...results import HotSpotFields, HotSpotMode
-from ..results.cell_grids import GRIDS, divisions
-from ..results.recording import gathered, sampled
+from ..results.recording import GRIDS, divisions, gathered, sampled
 from .wave_model import WaveModel, WaveSystem
 
 SIGNS = {"whole": 0, "symmetric": 1, "antisymmetric": -1}
@@ -61,7 +60,7 @@ def mode_fields(model: WaveModel, waves: WaveSystem, mode: WaveMode) -> HotSpotM
 
 
 def _along_wave(displacement: np.ndarray) -> np.ndarray:
-    """Displacement ``(u1, u2, i w)`` from (u1, u2, w), see `bulk.waves`."""
+    """Displacement ``(u1, u2, i w)`` from (u1, u2, w), see `bulk.kinematics`."""
     displacement[..., 2] *= 1j
     return displacement
 

@@ -9,9 +9,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from ...laws.wave_modes import WaveMode, at_speed, first_critical, lowest, with_wear
-from ...laws.waves import WaveEquations
-from .supports import Symmetry
+from ...laws.waves import WaveEquations, WaveMode, at_speed, first_critical, lowest, with_wear
+from .bodies import Symmetry
 from .wave_model import WaveModel
 
 Found = TypeVar("Found")

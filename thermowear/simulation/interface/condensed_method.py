@@ -1,26 +1,119 @@
-"""Contact solver on the condensed interface, a small dense complementarity problem."""
+"""Contact solvers on the condensed interface: with a pressure space, and at each point."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any, Protocol
 
 import numpy as np
 
 from ...contact.operators.condensation import CondensedContact
+from ...contact.solvers.pointwise import PointwiseContact
 from ...contact.solvers.signorini import (
     NoEquilibrium,
     SaddleFactors,
     SignoriniSolution,
+    critical_factor,
     solve_contact,
 )
-from ...contact.solvers.static_stability import critical_factor
 from ...contact.wear.implicit_step import Slope, WearRates, newton_with_wear
 from ...contact.wear.wear_edge import EdgeSpace, edge_space
-from ...errors import ComputationError
-from ..system.fluid import parted_by_fluid
+from ...errors import CaseError, ComputationError
+from ...serialise import serialisable
+from ..heat.friction_heat import AnyHeat
+from ..system.conditions import InterfaceConditions, parted_by_fluid
 from ..system.system import System
-from .contact_solver import ContactSolution
+
+
+@serialisable
+@dataclass(frozen=True)
+class ContactSolution:
+    """Solution of a contact problem.
+
+    Attributes
+    ----------
+    pressure : ndarray, shape (n,) [Pa]
+    motion : ndarray, shape (n_modes,)
+        Amount of each rigid mode of the holder [m or rad].
+    warm_start : object
+        Solution to start the solver from.
+    apart : ndarray or None, shape (n,)
+        Gap of the points with pointwise contact: 0 where they press, NaN at other points; None
+        without such points [m].
+    """
+
+    pressure: np.ndarray
+    motion: np.ndarray
+    warm_start: Any
+    apart: np.ndarray | None = None
+
+
+class ContactSolver(Protocol):
+    """Solver of contact under given loads: condensed, or on the full system."""
+
+    def solve(
+        self,
+        gap: np.ndarray,
+        slope: Slope,
+        guess: ContactSolution | None,
+        conditions: InterfaceConditions,
+        heat: AnyHeat | None,
+        pointwise: np.ndarray | None = None,
+    ) -> ContactSolution:
+        """Solve contact of bodies with friction heat and a local compliance.
+
+        Parameters
+        ----------
+        gap : ndarray, shape (n,)
+            Gap without pressure, heat and motion of the holder [m].
+        slope : Slope
+            Gap per pressure in addition to the deflection of the bodies [m/Pa].
+        guess : ContactSolution or None
+        conditions : InterfaceConditions
+        heat : AnyHeat or None
+        pointwise : ndarray of bool, shape (n,), optional
+            Points at the edge of the wear with pointwise contact, see `contact.wear.wear_edge`.
+
+        Raises
+        ------
+        ComputationError
+        """
+
+    def point_compliance(self, points: np.ndarray) -> np.ndarray:
+        """Deflection per pressure of a single point, NaN at other points, shape (n,) [m/Pa].
+
+        Parameters
+        ----------
+        points : ndarray of bool, shape (n,)
+            From `InterfaceProblem.begin`.
+        """
+
+    def steady(
+        self,
+        pressure: np.ndarray,
+        rates: WearRates,
+        conditions: InterfaceConditions,
+        pointwise: np.ndarray | None = None,
+    ) -> np.ndarray:
+        """Steady pressure in the discretisation of the solver, from that of the principle [Pa].
+
+        Parameters
+        ----------
+        pressure : ndarray, shape (n,) [Pa]
+        rates : WearRates
+        conditions : InterfaceConditions
+            Conditions in the steady state.
+        pointwise : ndarray of bool, shape (n,), optional
+            Points with pointwise contact.
+        """
+
+    def largest_deflection(self, contact: ContactSolution) -> float:
+        """Largest change of the gap by elastic deflection [m]."""
+
+    def deflection_range(self, contact: ContactSolution) -> float:
+        """Range of the elastic deflection over the contact area [m]."""
+
 
 _ITERATIONS = 60
 _FIRST_PART, _LEAST_PART = 1 / 8, 1 / 256
@@ -291,3 +384,40 @@ class CondensedMethod:
         motion = self._given.copy()
         motion[self._free] = solution.motion
         return ContactSolution(pressure, motion, solution, apart)
+
+
+class PointwiseMethod(CondensedMethod):
+    """Contact conditions at each point, from the solution of weak contact.
+
+    Without wear, heat and friction in the section.
+
+    Raises
+    ------
+    CaseError
+        If there is one of them.
+    """
+
+    def __init__(self, system: System):
+        super().__init__(system)
+        if system.thermal is not None or system.traction is not system.trace:
+            raise CaseError(_ALONE)
+        self._points = PointwiseContact(system.influence, system.contact, system.holder)
+
+    def solve(
+        self, gap, slope, guess: ContactSolution | None, conditions, heat, pointwise=None
+    ) -> ContactSolution:
+        wears = len(slope.rows) or np.any(slope.point != self._system.softness)
+        if wears or heat is not None or pointwise is not None:
+            raise CaseError(_ALONE)
+        weak = super().solve(gap, slope, guess, conditions, heat)
+        given, start = gap + self._dead, weak.warm_start
+        found = self._points.solve(
+            given, slope.point, conditions.load, start.coefficients, start.motion
+        )
+        motion = self._given.copy()
+        motion[self._free] = found.motion
+        resolved = replace(start, coefficients=found.coefficients, motion=found.motion)
+        return ContactSolution(found.pressure, motion, resolved)
+
+
+_ALONE = 'contact.method: "pointwise" is for contact without wear, heat and friction'

@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from ...contact.operators.heat import ThermalState
-from ...contact.solvers.anderson import AndersonMixing
+from ...contact.operators.exchange_matrix import ThermalState
+from ...contact.solvers.coupled_positions import AndersonMixing
 from ...errors import ComputationError
 from ..system.conditions import ConditionModel, InterfaceConditions
 

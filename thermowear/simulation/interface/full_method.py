@@ -17,13 +17,13 @@ from ...contact.full.nitsche import (
     stability_limit,
     thermal_traction,
 )
-from ...contact.solvers.anderson import AndersonMixing
+from ...contact.solvers.coupled_positions import AndersonMixing
 from ...contact.wear.implicit_step import WearRates
 from ...errors import ComputationError
 from ...parallel import sum_over_ranks
 from ..system.setup_cache import SetupCache
 from ..system.system import System
-from .contact_solver import ContactSolution
+from .condensed_method import ContactSolution
 
 _ITERATIONS = 60
 _TOLERANCE = 1e-9  # of the largest pressure

@@ -24,9 +24,8 @@ import numpy as np
 from ...contact.wear.implicit_step import WearRates
 from ...contact.wear.wear_edge import closing_times, edge_points, has_passed, rough_points
 from ..system.system import System
-from .contact_solver import ContactSolver
-from .interface_wear import InterfaceWear
-from .sdirk import InterfaceState
+from .condensed_method import ContactSolver
+from .sdirk import InterfaceState, InterfaceWear
 
 Note = Callable[[str], None] | None
 """Function that is called with a note for the user."""

@@ -11,17 +11,13 @@ from ...errors import ComputationError
 from ..heat.friction_heat import AnyHeat, FrictionHeat, InitialHeat, friction_heat
 from ..system.conditions import ConditionModel, InterfaceConditions
 from ..system.system import System
-from .condensed_method import CondensedMethod
-from .contact_solver import ContactSolution, ContactSolver
-from .equilibrium import ContactState
+from .body_state import ContactState
+from .condensed_method import CondensedMethod, ContactSolution, ContactSolver, PointwiseMethod
 from .fixed_point import Trial, imperfect_contact, self_consistent
 from .full_method import FullMethod
 from .growing_edge import GrowingEdge, Note
-from .interface_wear import InterfaceWear
-from .pointwise_method import PointwiseMethod
-from .sdirk import InterfaceState, WearProblem
-from .steady import SteadyState
-from .steady_limit import SteadyLimit, steady_limit
+from .sdirk import InterfaceState, InterfaceWear, WearProblem
+from .steady import SteadyLimit, SteadyState, steady_limit
 
 _UNWORN = (
     "contact: the iteration for the contact set and the state-dependent properties did not "

@@ -10,15 +10,14 @@ import numpy as np
 from ...contact.operators.pressure import dense, scaled
 from ...contact.solvers.signorini import NoEquilibrium, solve_contact
 from ...errors import ComputationError
-from ...laws.principle.least_worn import least_worn
-from ...laws.principle.steady import NotCarried, SteadyWear, steady_pressure
+from ...laws.principle.steady import NotCarried, SteadyWear, least_worn, steady_pressure
 from ..heat.friction_heat import friction_heat
-from ..system.conditions import ConditionModel, InterfaceConditions
-from ..system.fluid import parted_by_fluid
+from ..system.conditions import ConditionModel, InterfaceConditions, parted_by_fluid
 from ..system.system import System
-from .body_state import opening_by
-from .equilibrium import ContactState
+from .body_state import ContactState, opening_by
 from .fixed_point import Trial, self_consistent
+from .growing_edge import GrowingEdge
+from .sdirk import InterfaceState
 
 _NONE = (
     "no steady state found: the iteration for state-dependent friction, wear or conductance did "
@@ -174,3 +173,54 @@ def _at_rest(system: System, carried: ContactState) -> tuple[np.ndarray, np.ndar
             "holders"
         ) from None
     return contact.basis[:, own] @ found.coefficients, pressing @ found.motion
+
+
+@dataclass(frozen=True)
+class SteadyLimit:
+    """Limit of a running-in in the pressure space of its contact.
+
+    Attributes
+    ----------
+    steady : SteadyState
+    edge : ndarray of bool or None, shape (n,)
+        Points with pointwise contact of the state that approaches it.
+    points : ndarray of bool or None, shape (n,)
+        Those that it keeps.
+    pressure : ndarray, shape (n,) [Pa]
+    """
+
+    steady: SteadyState
+    edge: np.ndarray | None
+    points: np.ndarray | None
+    pressure: np.ndarray
+
+
+def steady_limit(
+    edge: GrowingEdge, steady: SteadyState, state: InterfaceState, last: SteadyLimit | None
+) -> SteadyLimit:
+    """Limit that a state approaches.
+
+    Points that an edge of the wear has left behind keep pointwise contact where the pressure space
+    is too coarse for the steady pressure. The limit is then that of the space with these points.
+
+    Parameters
+    ----------
+    edge : GrowingEdge
+    steady : SteadyState
+    state : InterfaceState
+    last : SteadyLimit or None
+        An earlier limit, for its pressure if the space is the same.
+    """
+    points = state.pointwise
+    if points is not None and edge.partial_zones(state.worn):
+        points = None  # not yet the limit
+    if last is not None and last.steady is steady and _same(last.points, points):
+        return replace(last, edge=state.pointwise)
+    conditions = steady.contact.conditions
+    rates = edge.wear.final_rates(conditions)
+    pressure = edge.method.steady(steady.contact.pressure, rates, conditions, points)
+    return SteadyLimit(steady, state.pointwise, points, pressure)
+
+
+def _same(one: np.ndarray | None, other: np.ndarray | None) -> bool:
+    return one is other or (one is not None and other is not None and np.array_equal(one, other))

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ...bulk.bodies import Bodies
-from ...bulk.points.point_values import CellPoint, located
+from ...bulk.points import CellPoint, located
 from ...errors import CaseError
 from ...model.model import Model
 from ...model.probe import Probe

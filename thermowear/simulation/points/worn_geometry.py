@@ -9,8 +9,7 @@ import numpy as np
 import scipy
 
 from ...contact.faces.face import Surface
-from ...contact.search.contacts import Contacts
-from ...contact.search.pairing import Pairing
+from ...contact.search.pairing import Contacts, Pairing
 from ...contact.search.refinement import Rule
 from ...geometry.mesh.mixed import AnyMesh
 from ...geometry.moving.new_face import NewFace

@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from ...contact.wear.implicit_step import WearRates
-from ...laws.layered_wear import LayeredWear, layers_of
+from ...laws.wear import LayeredWear, layers_of
 from ...model.face_wear import FaceWear
 from ...model.model import Model
 from ..interface.sdirk import InterfaceState

@@ -7,10 +7,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import scipy.sparse as sp
 
-from ...bulk.mechanics.elasticity import Elasticity
+from ...bulk.elasticity.elasticity import Elasticity
 from ...contact.operators.rigid_motion import Load, RigidMode, hold
-from ...contact.search.contacts import Contacts
-from ...contact.search.pairing import Pairing
+from ...contact.search.pairing import Contacts, Pairing
 from ...errors import CaseError
 from ...laws.motions import RigidMotion, rotation, translation
 from ...model.body import Body

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
 from ...model.model import Model, Zone
-from ..points.contact_points import groups_of_parts, softness_of_parts
-from ..points.face_regions import regions_of
+from ..points.contact_points import groups_of_parts, regions_of, softness_of_parts
 
 Part = TypeVar("Part")
 

@@ -1,4 +1,4 @@
-"""System of a model: meshed, paired and assembled bodies; condensed on first use.
+"""System of a model: meshed, paired and assembled bodies, and the wear of their faces.
 
 Set-up results (mesh, factors, condensed operators) are cached and shared by the cases of a sweep.
 """
@@ -14,35 +14,129 @@ import numpy as np
 import scipy.sparse as sp
 
 from ...bulk.bodies import Bodies
-from ...bulk.mechanics.elasticity import Elasticity
-from ...bulk.solver_choice import SolverChoice
+from ...bulk.elasticity.elasticity import Elasticity
+from ...bulk.solvers.choice import SolverChoice
 from ...contact.operators.condensation import (
     CondensedContact,
     Influence,
     influence,
     pressure_loads,
+    vector_trace,
 )
 from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.operators.rigid_motion import RigidHolder, RigidMode, Sliding, hold
 from ...contact.operators.thermal_opening import DistortionRows, OpeningStorage, ThermalOpening
-from ...contact.operators.traces import vector_trace
-from ...contact.search.contacts import Contacts
-from ...contact.search.pairing import Pairing
-from ...laws.distribution import Distribution
+from ...contact.search.pairing import Contacts, Pairing
+from ...laws.distribution import IN_PLACE, Distribution, joined_distributions
 from ...laws.interfaces import Law
 from ...laws.motions import RigidMotion, combined
+from ...laws.wear import LayeredWear, joined_laws
 from ...model.body import Facing
+from ...model.face_wear import FaceWear, Wear
 from ...model.interface import Interface
 from ...model.model import Model, Zone
+from ...model.tracks import EvenTrack
 from ...parallel import sum_over_ranks
 from ...timer import Phases
-from ..points.contact_points import facing_parts
-from ..points.singular_edges import singular_points
+from ..points.contact_points import facing_parts, singular_points
 from ..points.worn_geometry import WornGeometry
-from .joint_wear import JointWear
 from .rigid_modes import approaches, dead_resultant, load_directions
 from .setup_cache import CacheKeys, SetupCache
 from .thermal_system import ThermalSystem
+
+
+@dataclass(frozen=True)
+class JointWear:
+    """Wear at the contact points of a model.
+
+    Attributes
+    ----------
+    model : Model
+    contacts : Contacts
+    """
+
+    model: Model
+    contacts: Contacts
+
+    @cached_property
+    def laws(self) -> dict[int, Law]:
+        """Wear laws of the first (0) and of the second faces; faces without wear are left out."""
+        return self.laws_of(self._counts)
+
+    def laws_of(self, counts: Sequence[int]) -> dict[int, Law]:
+        """Wear laws, likewise, of numbers of points or pressure functions of each interface."""
+        return {
+            side: joined_laws([_law(wear, pairing, side) for wear, pairing in each], counts)
+            for side, each in self._sides.items()
+        }
+
+    @cached_property
+    def spreads(self) -> dict[int, Distribution]:
+        """Distribution of the wear of these faces, likewise."""
+        return {
+            side: joined_distributions(
+                [self._distribution(wear, pairing) for wear, pairing in each],
+                self._counts,
+                [_track(wear) or str(k) for k, (wear, _) in enumerate(each)],
+            )
+            for side, each in self._sides.items()
+        }
+
+    @cached_property
+    def coverage(self) -> np.ndarray:
+        """Fraction of the worn area of each face that is in contact at a time, shape (2, n)."""
+        result = np.ones((2, sum(self._counts)))
+        for side, spread in self.spreads.items():
+            result[side] = spread.coverage
+        return result
+
+    def _distribution(self, wear: Wear | None, pairing: Pairing) -> Distribution:
+        thickness = self.model.thickness or 1.0
+        if wear is None:
+            return IN_PLACE
+        return wear.distribution(pairing.points, pairing.weights, thickness)
+
+    @property
+    def _counts(self) -> list[int]:
+        return [len(pairing.weights) for pairing in self.contacts.each]
+
+    @cached_property
+    def _sides(self) -> dict[int, list[tuple[Wear | None, Pairing]]]:
+        """Wear of a side of every interface, with its points, for the sides that wear anywhere."""
+        interfaces = self.model.interfaces
+        worn = sorted({side for interface in interfaces for side in interface.wear})
+        pairs = list(zip(interfaces, self.contacts.each, strict=True))
+        return {side: [(one.wear.get(side), pairing) for one, pairing in pairs] for side in worn}
+
+
+def _law(wear: Wear | None, pairing: Pairing, side: int) -> Law | None:
+    """Law of a side of an interface; None where it does not wear."""
+    if wear is None:
+        return None
+    law = wear.law_at(pairing.groups[side])
+    if not (isinstance(law, LayeredWear) and wear.in_place):  # tracks are worn evenly
+        return law
+    return replace(law, variation=depth_variation(pairing))
+
+
+def depth_variation(pairing: Pairing) -> np.ndarray:
+    """Range of the wear depth between the neighbours of each point, (n,) [m].
+
+    That of the unworn gap: constant in time, as the depth has to be a function of the dose alone.
+    """
+    facet, gap, area = pairing.carrying.facet, pairing.gap, pairing.weights
+    low, high = np.full((2, facet.max() + 1), [[np.inf], [-np.inf]])
+    np.minimum.at(low, facet, gap)
+    np.maximum.at(high, facet, gap)
+    share = area / np.bincount(facet, area)[facet]
+    return 2 * (high - low)[facet] * share ** (1 / pairing.carrying.face.dim)
+
+
+def _track(wear: Wear | None) -> str:
+    """Name of the track that passes several interfaces; empty for one of its own."""
+    track = wear.track if isinstance(wear, FaceWear) else None
+    return track.name if isinstance(track, EvenTrack) else ""
+
 
 _DEPENDENT = 1e-10
 """Relative singular value below which motions are linearly dependent."""

@@ -9,8 +9,8 @@ import numpy as np
 
 from ...laws.principle.patch import wear_vectors
 from ...laws.principle.steady import SelfLocking
-from ...reference import guided_face as reference
-from ...reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
+from ...reference import rigid_faces as reference
+from ...reference.rigid_faces import ArcBlock, DrumBrakeShoe, LeverBlock
 from ..check import Check, compare, printed
 from . import patches as cases
 from .patches import CLOSED_FORM, EXPONENTS, MPA, dissipation, worst

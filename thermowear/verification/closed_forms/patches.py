@@ -17,7 +17,7 @@ import numpy as np
 from ...laws import PowerWear, rotation, translation
 from ...laws.principle.patch import ContactPatch, contact_patch
 from ...laws.principle.steady import SteadyWear
-from ...reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
+from ...reference.rigid_faces import ArcBlock, DrumBrakeShoe, LeverBlock
 from ..check import Check, compare, compare_worst
 
 CLOSED_FORM = "Páczelt and Mróz, Int. J. Solids Struct. 44 (2007) 895, closed form"

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...laws import LocalState
 from ...reference import annular_punch as ring
-from ...reference import flat_face
+from ...reference import rigid_faces
 from ..check import Check, compare, printed
 from . import patches as cases
 from .patches import CLOSED_FORM, EXPONENTS, MPA, dissipation, worst
@@ -21,10 +21,10 @@ def case_1() -> Iterator[Check]:
         force, length, width, speed = rng.uniform((1e2, 0.01, 0.01, 0.01), (1e5, 0.1, 0.1, 1.0))
         case = cases.punch(b, force, length, width, speed)
         steady, name = case.steady(), f", b = {b:.3g}"
-        exact = flat_face.centred_pressure(force, length * width)
+        exact = rigid_faces.centred_pressure(force, length * width)
         yield worst(f"pressure{name} [Pa]", steady.pressure, exact)
         factor = float(case.laws[0].factor(np.array([speed]))[0])
-        exact = flat_face.volume_rate(force, length * width, factor, b)
+        exact = rigid_faces.volume_rate(force, length * width, factor, b)
         volume = case.patch.weights @ steady.rates[0]
         yield compare(f"volume rate{name} [m³/s]", volume, exact, 1e-9, CLOSED_FORM)
         yield dissipation(case, name)
@@ -32,7 +32,7 @@ def case_1() -> Iterator[Check]:
 
 def case_2() -> Iterator[Check]:
     """Rectangular punch that translates and tilts about both axes."""
-    for b, (constant, slope, *pressures) in flat_face.TILTING_PUNCH.items():
+    for b, (constant, slope, *pressures) in rigid_faces.TILTING_PUNCH.items():
         case = cases.tilting_punch(b, probes=(0.0, 0.03, 0.06))
         found = case.steady().pressure[-3:] / MPA
         rate = found**b
@@ -43,7 +43,7 @@ def case_2() -> Iterator[Check]:
         for place, p, known in zip((0, 30, 60), found, pressures, strict=True):
             yield printed(f"pressure at x = {place} mm{name} [MPa]", p, known)
         x = case.patch.points[:, 0] - 0.03
-        exact = flat_face.tilted_pressure(x, 10e3, -50.0, 0.06, 0.08, b)
+        exact = rigid_faces.tilted_pressure(x, 10e3, -50.0, 0.06, 0.08, b)
         yield worst(f"pressure{name} [Pa]", case.steady().pressure, exact)
         yield dissipation(case, name)
 
@@ -58,7 +58,7 @@ def case_6() -> Iterator[Check]:
             joint, height, friction = rng.uniform((-0.1, 0.01, 0.1), (0.1, 0.05, 0.5))
             middle, offset = start + length / 2, eccentricity * length * force
             moment = force * (middle - joint) + sense * friction * height * force + offset
-            zone = flat_face.contact_length(force, offset, length, b)
+            zone = rigid_faces.contact_length(force, offset, length, b)
             end = start + (zone if offset < 0 else length - zone)
             case = cases.tilting_block(
                 b, sense, force, moment, (start, start + length), joint, height, width, friction,
@@ -68,12 +68,12 @@ def case_6() -> Iterator[Check]:
             state = "partial contact" if zone < length else "full contact"
             name = f", b = {b:g}, mu = {sense * friction:.3g}, {state}"
             ζ = case.patch.points[:, 2] - middle
-            exact = flat_face.tilted_pressure(ζ, force, offset, length, width, b)
+            exact = rigid_faces.tilted_pressure(ζ, force, offset, length, width, b)
             smooth = zone == length or b <= 1  # else the root at the edge limits the quadrature
             allowed = 1e-9 if smooth else 1e-4
             yield worst(f"pressure{name} [Pa]", steady.pressure, exact, allowed)
             if b == 1 and zone == length:
-                exact = flat_face.linear_pressure(ζ, force, offset, length, width)
+                exact = rigid_faces.linear_pressure(ζ, force, offset, length, width)
                 yield worst(f"linear pressure{name} [Pa]", steady.pressure, exact)
             yield dissipation(case, name)
 

@@ -18,7 +18,7 @@ from ....case.tables.plane_geometry import PlaneGeometry
 from ....case.values.section import KeyFault
 from ....case.values.units import Angle, Length
 from ...meshing.cells import ORDER, Claim, Sheet, every, grid, level, mesh_body, tagged_bodies
-from ...meshing.polar import Division, complete
+from ...meshing.rings import Division, complete
 from .shoe import ORIGIN, check_order, degrees
 
 _STEEPEST = math.radians(80.0)

@@ -19,7 +19,7 @@ from ....case.values.section import KeyFault
 from ....case.values.units import Length
 from ....errors import CaseError
 from ...meshing.cells import ORDER, Claim, every, mesh_body, tagged_bodies
-from ...meshing.polar import Division, Polar, incomplete
+from ...meshing.rings import Division, Polar, incomplete
 from ..on_block import expected_half_width
 from .shoe import degrees
 

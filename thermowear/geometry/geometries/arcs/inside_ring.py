@@ -14,7 +14,7 @@ from pydantic import model_validator
 from ....case.tables.geometry import keyed
 from ....case.values.units import Coordinate, Length
 from ...meshing.cells import Sheet
-from ...meshing.polar import Division
+from ...meshing.rings import Division
 from .arc_contact import ArcContact
 from .shoe import ORIGIN, Shoe, layered_sheets
 

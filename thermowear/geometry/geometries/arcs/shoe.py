@@ -12,7 +12,7 @@ import numpy as np
 
 from ....case.values.section import KeyFault
 from ...meshing.cells import Claim, Sheet
-from ...meshing.polar import Division, Polar
+from ...meshing.rings import Division, Polar
 
 ORIGIN = Polar()
 _LONGEST = math.radians(170.0)

@@ -18,7 +18,7 @@ from ....case.values.section import KeyFault, Section
 from ....case.values.units import Angle, Coordinate, Length
 from ...checks.assembly_checks import check_drawn
 from ...meshing.cells import ORDER, Claim, every, mesh_body, tagged_bodies
-from ...meshing.polar import all_round, complete
+from ...meshing.rings import all_round, complete
 from .shoe import ORIGIN, Shoe, check_order, degrees
 
 _DRUM = "drum"

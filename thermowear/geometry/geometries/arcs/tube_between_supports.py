@@ -18,7 +18,7 @@ from ....case.values.section import KeyFault, Section
 from ....case.values.units import Angle, Length
 from ...checks.assembly_checks import check_drawn
 from ...meshing.cells import ORDER, Claim, every, mesh_body, tagged_bodies
-from ...meshing.polar import Division, Polar, all_round
+from ...meshing.rings import Division, Polar, all_round
 from .in_hole import InHole, check_arc
 from .shoe import ORIGIN, degrees
 

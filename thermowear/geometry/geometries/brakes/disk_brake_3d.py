@@ -21,8 +21,14 @@ from ....case.values.units import Angle, Length
 from ...mesh.tagged import TaggedMesh
 from ...meshing.cells import MeshedBody, tagged_bodies
 from ...meshing.divisions import growing, joined
-from ...meshing.revolved import check_revolved, mesh_polygon, revolved, row_sizes
-from ...meshing.tetrahedra import SectorZone, mesh_solids
+from ...meshing.tetrahedra import (
+    SectorZone,
+    check_revolved,
+    mesh_polygon,
+    mesh_solids,
+    revolved,
+    row_sizes,
+)
 from .brake_drawing import DrawnBrake
 from .pad_outline import PadOutline
 

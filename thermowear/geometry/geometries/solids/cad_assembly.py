@@ -14,8 +14,8 @@ from ....case.values.section import KeyFault
 from ....case.values.units import Length
 from ...from_cad.meshing_process import meshed_contents, touching_bodies
 from ...from_cad.request import CadRequest, SurfaceRequest, TouchRequest, Zone
-from ...reading.bodies import bodies_in
-from ...reading.named import Named
+from ...reading.assembly import bodies_in
+from ...reading.contents import Named
 from ..assembly_file import AssemblyFile
 from .cad_keys import CadSolids, CadSurfaces, body_requests, check_files, with_zones
 

@@ -14,7 +14,7 @@ from ....case.values.section import KeyFault
 from ....case.values.units import Length
 from ...from_cad.meshing_process import meshed_contents
 from ...from_cad.request import CadRequest, FaceChoice, SurfaceRequest, TouchRequest, Zone
-from ...reading.bodies import bodies_in
+from ...reading.assembly import bodies_in
 from ..mesh_file import MeshFile
 from .cad_keys import CadFaces, CadSolids, body_requests, check_files, with_zones
 

@@ -13,9 +13,9 @@ from ....case.values.json_schema import A_NAME, LIST_OF_NAMES, AnyOf, OrAlso
 from ....case.values.pressing import Pressing
 from ....case.values.section import KeyFault, Number, Section
 from ....case.values.units import Coordinate
-from ...from_cad.curved import expected_zones
 from ...from_cad.meshing_process import curved_places
 from ...from_cad.request import BodyRequest, CadRequest, FaceChoice
+from ...from_cad.touching import expected_zones
 
 Place = tuple[Coordinate, Coordinate, Coordinate]
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}

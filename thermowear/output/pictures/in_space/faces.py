@@ -14,21 +14,21 @@ import pyvista
 from ....results import FIELDS
 from ...tables import TableColumns
 from ..maps import triangulated
-from ..panels import Limits, color_limits, color_map
-from ..saving import cropped
-from .merging import merged
+from ..panels import Limits, color_limits, color_map, cropped
 from .solids import (
     GREY,
     SHADING,
     Solid,
+    View,
     add_grey,
     add_lines,
     add_solid,
+    draw_views,
     focus_on,
+    merged,
     rendering,
     solid_of,
 )
-from .views import View, draw_views
 
 _ABOVE = (0.45, -1.0, 0.9)
 """Direction of the camera from the face."""

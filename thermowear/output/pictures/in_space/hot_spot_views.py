@@ -12,8 +12,7 @@ import pyvista
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
-from ..panels import MAP_STYLE, panels
-from ..saving import cropped
+from ..panels import MAP_STYLE, cropped, panels
 from .solids import rendering
 
 _VIEWS = {"from above": (0.35, -0.8, 1.0), "from below": (0.35, -0.8, -1.0)}

@@ -13,8 +13,7 @@ import numpy as np
 import pyvista
 from matplotlib.patches import Patch
 
-from ..panels import MAP_STYLE, panels
-from ..saving import cropped
+from ..panels import MAP_STYLE, cropped, panels
 from .solids import add_lines, rendering, solid_of
 
 _VIEW = (4.6, 3.6)  # width and height of a view [inches]
@@ -34,7 +33,7 @@ def draw_mesh(source: Path, path: Path) -> None:
     ----------
     source : Path
         ``.npz`` with ``bodies``, ``surfaces``, and ``points_B``, ``facets_B`` and ``surface_B`` of
-        body B, see `thermowear.geometry.mesh.outside`.
+        body B, see `thermowear.geometry.mesh.mixed`.
     path : Path
     """
     with np.load(source, allow_pickle=False) as file:

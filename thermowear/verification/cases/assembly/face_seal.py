@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ....case import load
-from ....reference import heated_ring as reference
+from ....reference import heat as reference
 from ....results import Result
 from ...check import Check, compare, compare_worst, computed
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from ....case.assembly.schema import AssemblyCase
 from ....laws.motions import rotation
-from ....reference.guided_face import DrumBrakeShoe
+from ....reference.rigid_faces import DrumBrakeShoe
 from ....results import Result
 from ...check import Check, compare, computed, starter
 from ...closed_forms.guided import SHIGLEY

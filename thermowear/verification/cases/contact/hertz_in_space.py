@@ -17,8 +17,11 @@ from pathlib import Path
 import numpy as np
 
 from ....case import load
-from ....reference.elastic_contact.elliptical_contact import EllipticalContact, elliptical_contact
-from ....reference.elastic_contact.hertz import sphere_on_half_space
+from ....reference.elastic_contact.hertz import (
+    EllipticalContact,
+    elliptical_contact,
+    sphere_on_half_space,
+)
 from ....results import Result
 from ...check import Check, compare, computed
 from ...quarter_meshes import (

@@ -14,7 +14,7 @@ import numpy as np
 
 from ....case.tables.schema import Case
 from ....laws import LocalState
-from ....reference.slabs import conductance, contact_temperatures
+from ....reference.heat import conductance, contact_temperatures
 from ....results import Result
 from ...check import Check, compare, compare_worst, computed, run_starter, starter
 

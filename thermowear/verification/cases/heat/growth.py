@@ -18,7 +18,7 @@ from ....geometry.mesh.tagged import TaggedMesh
 from ....geometry.meshing.cells import level, mesh_lattice, tagged_bodies
 from ....geometry.meshing.divisions import growing
 from ....laws import PowerWear
-from ....laws.coefficients import Constant
+from ....laws.interfaces import Constant
 from ....model import (
     Body,
     Discretisation,

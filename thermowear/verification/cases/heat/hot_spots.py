@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ....case import load
-from ....reference.hot_spots import LayerBetweenHalfPlanes, WaveMaterial
+from ....reference.instability import LayerBetweenHalfPlanes, WaveMaterial
 from ....results import Result
 from ....simulation.analyses.run import run
 from ....simulation.from_case.analysis import analysis_of, model_of

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ....reference.half_space import PEAKS, MovingBand
+from ....reference.heat import PEAKS, MovingBand
 from ....results import Result
 from ...check import Check, compare, compare_worst, run_starter
 

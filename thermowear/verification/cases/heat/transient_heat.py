@@ -10,7 +10,7 @@ from mpi4py import MPI
 import numpy as np
 
 from ....case.tables.schema import Case
-from ....reference.half_space import HalfSpace, braking_peak, braking_rise, surface_rises
+from ....reference.heat import HalfSpace, braking_peak, braking_rise, surface_rises
 from ....results import Result
 from ....simulation.analyses.positioning import prepare
 from ....simulation.from_case import model_of

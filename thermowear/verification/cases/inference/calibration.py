@@ -22,7 +22,7 @@ from ....calibration.problem import Problem
 from ....calibration.readings import reading
 from ....calibration.solution import Calibration, solve
 from ....reference.elastic_contact.growing_contact import growing_line
-from ....simulation.analyses.series import Series
+from ....simulation.analyses.run import Series
 from ...check import Check, compare, compare_each, starter
 from ..contact.hertz import MODULUS
 from ..wear.geometry_updates import PRESS, RADIUS

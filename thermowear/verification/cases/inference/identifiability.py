@@ -15,8 +15,7 @@ import numpy as np
 
 from ....inference.fit import Fit, fit
 from ....inference.identifiability import identify
-from ....inference.observations import Observations
-from ....inference.parameters import Parameter, ParameterSpace
+from ....inference.parameters import Observations, Parameter, ParameterSpace
 from ...check import Check, compare, compare_each
 
 COEFFICIENT, FRICTION, EXPONENT = 2e-3, 0.3, 1.4

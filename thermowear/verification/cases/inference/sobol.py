@@ -11,10 +11,9 @@ from .... import load
 from ....case import as_plain
 from ....case.studies.scalars import Scalar
 from ....inference.distributions import Uniform
-from ....inference.sampling import saltelli
-from ....inference.sensitivity import sobol_indices
+from ....inference.sensitivity import saltelli, sobol_indices
 from ....reference.sensitivity_functions import Ishigami, SobolProduct, UniformProduct
-from ....simulation.analyses.series import Series
+from ....simulation.analyses.run import Series
 from ....simulation.from_case import analysis_of, model_of
 from ...check import Check, compare_each, starter
 

@@ -20,8 +20,8 @@ from ....case.tables.schema import Case
 from ....geometry.cad.design import write_table
 from ....laws.motions import RigidMotion, rotation, translation
 from ....results import Result
-from ....simulation.analyses.design import steady_design
 from ....simulation.analyses.positioning import prepare
+from ....simulation.analyses.static import steady_design
 from ....simulation.from_case import model_of
 from ....timer import Phases
 from ...check import Check, compare, computed, run_starter, starter

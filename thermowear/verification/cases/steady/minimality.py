@@ -12,16 +12,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....laws.power_wear import PowerWear
-from ....laws.principle.functionals import (
+from ....laws.principle.minimum import (
+    Minimum,
     PowerFunctional,
     admissible_changes,
     friction_dissipation,
+    least_wear_dissipation,
+    minimise,
     wear_dissipation,
     wear_volume_rate,
 )
-from ....laws.principle.minimum import Minimum, least_wear_dissipation, minimise
-from ....reference.guided_face import ArcBlock, DrumBrakeShoe, LeverBlock
+from ....laws.wear import PowerWear
+from ....reference.rigid_faces import ArcBlock, DrumBrakeShoe, LeverBlock
 from ...check import Check, compare
 from ...closed_forms import patches
 from ...closed_forms.patches import SpecialCase

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ....reference.coated_bush import CoatedBush
+from ....reference.coatings import CoatedBush
 from ....results import InterfaceFields, Result
 from ...check import Check, compare, computed, starter
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from ....reference.coated_face import CoatedBall, flat_face_depth
+from ....reference.coatings import CoatedBall, flat_face_depth
 from ....results import Result
 from ...check import Check, compare, compare_worst, run_starter
 

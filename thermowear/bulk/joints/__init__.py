@@ -1,1 +1,0 @@
-"""Joints of glued bodies: weak continuity across them, and solvers of bodies joined by them."""

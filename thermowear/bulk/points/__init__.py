@@ -1,1 +1,0 @@
-"""Values of fields at points of the bodies."""

@@ -1,1 +1,0 @@
-"""Glued interfaces: pairs of points as in contact, with equalities in place of inequalities."""

@@ -1,1 +1,0 @@
-"""Time integration with error control."""

@@ -1,4 +1,4 @@
-"""Balances of force, moment, torque, heat and worn volume of each body of several."""
+"""Balances of force, moment, torque, heat and worn volume of each body."""
 
 from dataclasses import replace
 
@@ -41,6 +41,9 @@ def kinds(summary):
         ("two-pads-3d", {"mesh.degree": 2}, MECHANICS | {"heat_balance"}),
         ("disk-brake-two-pads", COARSE, {"force_balance", "heat_balance"}),
         ("two-shoe-drum", WORN_DRUM, MECHANICS | {"wear_volume"}),
+        ("drum-brake", {"mesh.degree": 4}, MECHANICS),
+        ("pin-on-disk-running-in", {}, MECHANICS | {"wear_volume"}),
+        ("disk-brake-stop", {}, {"force_balance", "heat_balance", "wear_volume"}),
     ],
 )
 def test_each_body_is_in_balance(starter, changes, expected):

@@ -91,7 +91,7 @@ def test_a_pair_as_an_assembly(starter, overrides):
         interfaces=(replace(model.interface, name="only"),),
         holders=(replace(model.holder, name="arm"),),
     )
-    assert not named.is_pair
+    assert named.named
     pair, joint = (run(each, analysis_of(case)) for each in (model, named))
     assert_alike(joint.columns("loads"), pair.columns("loads"), pair.columns("loads"), 1e-9)
     assert_alike(joint.columns("friction_only"), pair.columns("friction"), AT_POINTS, 1e-9)

@@ -135,7 +135,14 @@ class Interface:
     @property
     def table(self) -> str:
         """Table of the case file that describes it, for messages."""
-        return f"contacts.{self.name}" if self.name else "contact"
+        return self.path("contact")
+
+    def path(self, short: str) -> str:
+        """Path of a table or key of the case file, for messages: its table, or a short one.
+
+        Short cases have other tables than that of the contact for its motion, heat and wear.
+        """
+        return f"contacts.{self.name}" if self.name else short
 
     @cached_property
     def friction_law(self) -> Law:

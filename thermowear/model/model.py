@@ -177,10 +177,9 @@ class Model:
                 )
 
     @property
-    def is_pair(self) -> bool:
-        """True for two bodies with one interface without a name, of which the first one is held."""
-        alone = len(self.interfaces) == len(self.holders) == 1
-        return len(self.bodies) == 2 and alone and not self.interfaces[0].name
+    def named(self) -> bool:
+        """Whether contacts and holders have names; those of a short case have none."""
+        return any(one.name for one in self.interfaces)
 
     @cached_property
     def groups(self) -> list[tuple[int, ...]]:
@@ -279,7 +278,7 @@ class Model:
     @property
     def expected_zone(self) -> Zone | None:
         """Estimate of the contact zone; None where the mesh has no zone, as of several pairs."""
-        if not self.is_pair:
+        if len(self.interfaces) > 1 or len(self.holders) != 1:
             return None
         return self.meshes.expected_zone(self.holder.force, self.holder.approach, self.modulus)
 

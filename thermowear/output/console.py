@@ -43,7 +43,8 @@ def print_summary(console: Console, summary: dict, seconds: dict[str, float]) ->
     for label, value in _highlights(summary):
         numbers.add_row(label, value)
     console.print(numbers)
-    for kind in _OF_PARTS:
+    named = "contacts" in summary  # of a single contact, the bodies are in the highlights
+    for kind in _OF_PARTS if named else ("probes",):
         parts = summary.get(kind, {})
         keys = [k for k in _OF_PARTS[kind] if any(part.get(k) for part in parts.values())]
         if keys:

@@ -160,7 +160,7 @@ class Frame:
     track : WornTrack or None
         Worn track of a reciprocating analysis.
     contacts : dict of str to slice
-        Ranges of the points of each contact of several bodies, by name; empty for a pair.
+        Ranges of the points of each contact that has a name, by name.
     """
 
     number: int
@@ -200,7 +200,7 @@ class Result:
     fields : BodyFields, MixedFields or None
         Fields of the bodies, on rank 0 only.
     contacts : dict of str to slice
-        Ranges of the points of each contact of several bodies, by name; empty for a pair.
+        Ranges of the points of each contact that has a name, by name.
     contact_history : list of ContactRow
         Contacts of several bodies at the steps of a transient analysis.
     hot_spots : HotSpots or None

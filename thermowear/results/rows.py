@@ -29,10 +29,10 @@ class HistoryRow:
     max_wear_2: float = column("largest wear depth, body 2", "m", "µm")
     friction_power: float = column("friction power", "W", "kW")
     friction_force: float = column(
-        "friction force", "N", meaning="integral of its magnitude; not of several bodies"
+        "friction force", "N", meaning="integral of its magnitude; not of several contacts"
     )
     friction_torque: float = column(
-        "friction torque", "N m", meaning="about the axis of a rotation; not of several bodies"
+        "friction torque", "N m", meaning="about the axis of a rotation; not of several contacts"
     )
 
 

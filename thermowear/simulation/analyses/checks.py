@@ -22,6 +22,7 @@ from ...model.analyses import (
 )
 from ...model.model import Model
 from ...results import InterfaceFields
+from ...results.short_names import by_name
 from ..accuracy.error_estimate import WORTH_A_WARNING
 from ..geometry_update.outer_loop import GapWear
 from ..geometry_update.wider_zone import reaches_open_end
@@ -221,16 +222,14 @@ def singular_pressure(end: Snapshot, analysis: Analysis) -> tuple[dict[str, Any]
         }
         if p[own][at].max() > max(beside, largest):
             largest = float(p[own][at].max())
-            where = f" of the contact {one.name}" if one.name and not system.model.is_pair else ""
+            where = f" of the contact {one.name}" if one.name else ""
             text = (
                 f"the largest pressure{where}, {largest / 1e6:.4g} MPa, is at a sharp edge of one "
                 "body on the face of the other one, where it is singular: it grows with every "
                 f"refinement. The elements at such edges carry {percent(share)} of the load"
                 + (f"; the largest pressure off them is {beside / 1e6:.4g} MPa" if beside else "")
             )
-    if system.model.is_pair:
-        return next(iter(each.values()), {}), text
-    return {"contacts": each} if each else {}, text
+    return by_name("contacts", each) if each else {}, text
 
 
 def too_hot(summary: Mapping[str, Any]) -> str | None:

@@ -34,6 +34,7 @@ from ...model.analyses import StabilityAnalysis, StaticAnalysis
 from ...model.model import Model
 from ...parallel import sum_over_ranks
 from ...results import Modes, Result
+from ...results.short_names import by_name
 from ..heat.heat_steps import HeatOperators, HeatSteps
 from ..hot_spots.analysis import hot_spots
 from ..interface.body_state import ContactState
@@ -520,8 +521,7 @@ def critical_speeds(model: Model, factor: float | None, which: str = "") -> dict
         known = [None if factor is None or v is None else factor * abs(v) for v in given]
         names = f"critical_speed{which}_m_per_s", f"critical_angular_velocity{which}_rad_per_s"
         speeds[one.name] = dict(zip(names, known, strict=True))
-    by_contact = speeds[""] if model.is_pair else {"contacts": speeds}
-    return {f"critical_speed_factor{which}": factor, **by_contact}
+    return {f"critical_speed_factor{which}": factor, **by_name("contacts", speeds)}
 
 
 def hot_state(end: Snapshot, result: Result, observer: Observer) -> Result:

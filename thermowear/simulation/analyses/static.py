@@ -12,6 +12,7 @@ from ...contact.faces.face import Face, Surface
 from ...errors import ComputationError
 from ...geometry.cad.design import Design
 from ...results import Result
+from ...results.short_names import by_name
 from ..interface.body_state import body_state
 from ..interface.interface_problem import InterfaceProblem, interface_problem
 from ..interface.steady import steady_state
@@ -108,7 +109,7 @@ def wear_velocity(system: System, velocity: np.ndarray | None) -> dict[str, Any]
         if velocity is not None:
             pairs = zip(holder.free, amounts[modes], strict=True)
             own |= {_VELOCITIES[name]: float(value) for name, value in pairs}
-    return found[system.model.holder.name] if system.model.is_pair else {"holders": found}
+    return by_name("holders", found)
 
 
 _SAME = 1e-9  # relative to the size of the face: closer points coincide

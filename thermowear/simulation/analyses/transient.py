@@ -11,6 +11,7 @@ from ...balances import ALLOWED, require
 from ...errors import ComputationError, StandstillError
 from ...model.analyses import TransientAnalysis
 from ...results import ContactRow, HeatRow, HistoryRow, ProbeRow
+from ...results.short_names import by_name
 from ..geometry_update.outer_loop import OuterLoop
 from ..geometry_update.wider_zone import ends_outside_zone
 from ..heat.friction_heat import FrictionHeat
@@ -117,7 +118,7 @@ class TransientHistory(AnalysisHistory[Moment]):
         problem = interface_problem(system, observer.note)
         sizes = FewSizes(times_to_hit(settings, problem)) if problem.stores_heat else AnySize()
         self.loop = OuterLoop(problem, settings, partial(_principle, settings), sizes, observer)
-        self._speed, self._is_pair, self._alternates = 0.0, system.model.is_pair, False
+        self._speed, self._named, self._alternates = 0.0, system.model.named, False
         self._coated = layers(system.model).keys()
         self._lost: dict[Face, tuple[float, float]] = {}
         self._rubbing: tuple[InterfaceConditions, np.ndarray] | None = None
@@ -231,7 +232,7 @@ class TransientHistory(AnalysisHistory[Moment]):
                     f"worn_through_distance_{side + 1}_m": distance,
                 }
             )
-        return found.get("", {}) if model.is_pair else {"contacts": found}
+        return by_name("contacts", found)
 
     def _row(self, moment: Moment, slid: float, conditions: InterfaceConditions) -> HistoryRow:
         system, rows = self.loop.now.system, self.table(HistoryRow)
@@ -261,13 +262,13 @@ class TransientHistory(AnalysisHistory[Moment]):
         )
 
     def _friction(self, moment: Moment, conditions: InterfaceConditions) -> np.ndarray:
-        """Friction force, torque and power of a pair; of several bodies the power of all."""
+        """Friction force, torque and power of a contact; of several the power of all."""
         if self._rubbing is None or self._rubbing[0] is not conditions:
             system, count = self.loop.now.system, len(self._system.model.interfaces)
             rows = np.concatenate(
                 [friction_rows(system, k, conditions) for k in range(count)], axis=1
             )
-            if not self._is_pair:
+            if count > 1:
                 rows[:2] = np.nan
             self._rubbing = conditions, rows
         return self._rubbing[1] @ moment.state.pressure
@@ -317,8 +318,8 @@ class TransientHistory(AnalysisHistory[Moment]):
         )
 
     def _contact_rows(self, conditions: InterfaceConditions, moment: Moment) -> list:
-        """Rows of the contacts of several bodies."""
-        if self._is_pair:
+        """Rows of the contacts that have names."""
+        if not self._named:
             return []
         now = self.loop.now
         ambient = float("nan") if now.problem.heat is None else now.problem.heat.ambient

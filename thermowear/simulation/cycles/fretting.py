@@ -9,6 +9,7 @@ import numpy as np
 
 from ...model.analyses import FrettingAnalysis
 from ...results import ContactRow, CycleRow, HolderRow, LoadRow, StickRow, TangentialRow
+from ...results.short_names import by_name
 from ..interface.body_state import contact_state
 from ..results.recording import Snapshot, snapshot
 from ..runtime.history import AnalysisHistory
@@ -217,7 +218,7 @@ class FrettingHistory(AnalysisHistory[Increment]):
         self._cycle.append(state)
         system, path, at = self._system, self._path, self._state(state)
         rows: list[AnyRow] = [load_row(path.loads, at)]
-        if not system.model.is_pair:
+        if system.model.named:
             before = None if self._last is None else self._state(self._last)
             rows += [*contact_rows(at, before, path.duration(state)), *stick_rows(at)]
             rows += holder_rows(path.loads, at, path.reactions(state.state))
@@ -228,7 +229,7 @@ class FrettingHistory(AnalysisHistory[Increment]):
             start, end = (self._state(i).depths for i in (self._turn, state))
             self._per_cycle = (end - start) / state.jump.cycles
             radii = self._stick_radii()
-            radius = radii[0] if system.model.is_pair else np.nan
+            radius = radii[0] if len(radii) == 1 else np.nan
             rows.append(cycle_row([self._state(i) for i in self._cycle], radius))
         if state.restart is not None:
             self._turn = state
@@ -272,7 +273,7 @@ class FrettingHistory(AnalysisHistory[Increment]):
             "steps": len(self.table(LoadRow)),
             "time_s": last.time,
             "cycles": cycles[-1].cycle if cycles else 0,
-            **self._of_parts(last),
+            **self._of_parts(),
             "tangential_force_N": last.tangential_force,
             "tangential_displacement_m": last.tangential_displacement,
             "stick_area_m2": last.stick_area,
@@ -282,27 +283,24 @@ class FrettingHistory(AnalysisHistory[Increment]):
             "wear_volume_error_estimate_relative": self._state(self.last).edge_error(),
         }
 
-    def _of_parts(self, last: LoadRow) -> dict:
-        """Forces of a pair; numbers of each contact and holder of several bodies."""
+    def _of_parts(self) -> dict:
+        """Numbers of each contact and holder."""
         at, path, model = self._state(self.last), self._path, self._system.model
-        cycles = self.table(CycleRow)
-        if model.is_pair:
-            across = self.table(TangentialRow)
-            radius = cycles[-1].stick_radius if cycles else self._stick_radii()[0]
-            return {
-                "normal_force_N": last.normal_force,
-                "friction_force_N": abs(last.tangential_force),
-                "stick_radius_m": known(radius),
-                "guide_force_N": None,
-                **(tangential_summary(across[-1]) if across else {}),
-            }
-        rows = contact_rows(at), stick_rows(at), self._stick_radii()
+        cycles, reactions = self.table(CycleRow), path.reactions(self.last.state)
+        radii = self._stick_radii()
+        if cycles and len(radii) == 1:
+            radii = [cycles[-1].stick_radius]
+        rows = contact_rows(at), stick_rows(at), radii
         contacts = zip(model.interfaces, map(contact_summary, *rows), strict=True)
-        held = holder_rows(path.loads, at, path.reactions(self.last.state))
-        holders = zip(model.holders, map(holder_summary, held), strict=True)
+        held = map(holder_summary, holder_rows(path.loads, at, reactions))
+        across = tangential_rows(path.loads, at, reactions) if at.in_space else []
+        moved = list(map(tangential_summary, across)) or [{}] * len(model.holders)
+        holders = zip(model.holders, held, moved, strict=True)
+        driven = {} if model.named else {"guide_force_N": None}  # is the tangential force
         return {
-            "contacts": {one.name: found for one, found in contacts},
-            "holders": {one.name: found for one, found in holders},
+            **by_name("contacts", {one.name: found for one, found in contacts}),
+            **by_name("holders", {one.name: found | turned for one, found, turned in holders}),
+            **driven,
         }
 
     def _stick_radii(self) -> list[float]:

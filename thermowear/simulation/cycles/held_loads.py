@@ -74,7 +74,7 @@ def axis_of(holder: Holder) -> np.ndarray:
 
 
 def tangential_motions(holder: Holder) -> dict[str, RigidMotion]:
-    """Motions under tangential loads by name, in the order of `time_course.TANGENTIAL`.
+    """Motions under tangential loads by name, in the order of `laws.histories.TANGENTIAL`.
 
     One in a plane; in space along x and y, and about the axis through the pivot against the load
     direction.
@@ -128,9 +128,11 @@ class DrivenMotion:
         presses = self.name == "z" or self.holder.free == ("rotation",)
         return "press" if presses else "other"
 
-    def held(self, is_pair: bool) -> HeldMotion:
+    @property
+    def held(self) -> HeldMotion:
         """Motion for the contact operators."""
-        subject = "contact: body 1" if is_pair else f"holders.{self.holder.name}: the holder"
+        name = self.holder.name
+        subject = f"holders.{name}: the holder" if name else "contact: body 1"
         return HeldMotion(self.motion, self.holder.bodies, self.role, subject)
 
     def at(self, instant: float) -> tuple[float, float]:
@@ -183,7 +185,7 @@ class HeldLoads:
 
     def __post_init__(self):
         if not any(holder.history for holder in self.system.model.holders):
-            which = "load.history" if self.system.model.is_pair else "holders.NAME.history"
+            which = "holders.NAME.history" if self.system.model.named else "load.history"
             raise CaseError(f"{which}: missing; required in a fretting analysis")
         for holder in self.system.model.holders:
             only = () if holder.history is None else holder.history.in_space
@@ -218,7 +220,7 @@ class HeldLoads:
     @property
     def held(self) -> tuple[HeldMotion, ...]:
         """Motions for the contact operators."""
-        return tuple(each.held(self.system.model.is_pair) for each in self.motions)
+        return tuple(each.held for each in self.motions)
 
     @property
     def reactions(self) -> tuple[HeldMotion, ...]:

@@ -11,6 +11,7 @@ from ...contact.search.pairing import Pairing
 from ...contact.wear.worn_profile import StrokeGrid, SweptSurface
 from ...model.analyses import ReciprocatingAnalysis
 from ...results import ContactRow, HistoryRow, WornTrack
+from ...results.short_names import by_name
 from ..interface.body_state import contact_state
 from ..interface.interface_problem import interface_problem
 from ..interface.sdirk import InterfaceState
@@ -55,13 +56,13 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
             max_wear_1=deepest[0],
             max_wear_2=deepest[1],
             friction_power=float(cycle.power.sum()),
-            friction_force=float(cycle.friction[0]) if system.model.is_pair else float("nan"),
+            friction_force=float(cycle.friction[0]) if len(cycle.friction) == 1 else float("nan"),
             friction_torque=float("nan"),
         )
-        return [row] if system.model.is_pair else [row, *self._contact_rows(moment)]
+        return [row, *self._contact_rows(moment)]
 
     def _contact_rows(self, moment: Moment) -> list[ContactRow]:
-        """Rows of the contacts of several bodies: forces and areas are means of the cycle."""
+        """Rows of the contacts with names: forces and areas are means of the cycle."""
         cycle, nothing = self._problem.of_cycle(moment.state.contact), float("nan")
         volumes = self._volumes(moment.state.worn[0])
         return [
@@ -77,7 +78,8 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
                 max_temperature_1=nothing,
                 max_temperature_2=nothing,
             )
-            for k in range(len(cycle.force))
+            for k, interface in enumerate(self._system.model.interfaces)
+            if interface.name
         ]
 
     def snapshot(self, moment: Moment) -> Snapshot:
@@ -122,10 +124,8 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
         }
 
     def _of_parts(self, means: np.ndarray, volumes: np.ndarray) -> dict:
-        """Numbers of each contact and body of several, from arrays (2, n_interfaces)."""
+        """Numbers of each contact and body, from arrays (2, n_interfaces)."""
         model = self._system.model
-        if model.is_pair:
-            return {}
         contacts, bodies = {}, dict.fromkeys((body.name for body in model.bodies), 0.0)
         for k, interface in enumerate(model.interfaces):
             contacts[interface.name] = {
@@ -139,7 +139,7 @@ class ReciprocatingHistory(AnalysisHistory[Moment]):
             for side, body in enumerate(interface.bodies):
                 bodies[model.bodies[body].name] += float(volumes[side, k])
         worn = {name: {"wear_volume_m3": volume} for name, volume in bodies.items()}
-        return {"contacts": contacts, "bodies": worn}
+        return by_name("contacts", contacts) | {"bodies": worn}
 
     def _at_points(self, depths: np.ndarray) -> np.ndarray:
         """Depths (or rates) of both bodies at the mid-stroke points, shape (2, n)."""

@@ -160,7 +160,8 @@ def strokes(model: Model, settings: ReciprocatingAnalysis) -> np.ndarray:
         If both bodies of an interface of several move alike, or not at all.
     """
     given = 4 * settings.amplitude * settings.frequency
-    at_rest = given if model.is_pair else 0.0
+    moving = any(one.motion.velocity is not None for one in model.interfaces)
+    at_rest = given if len(model.interfaces) == 1 and not moving else 0.0
     each = [one.motion.velocity for one in model.interfaces]
     found = np.array([at_rest if velocity is None else velocity for velocity in each]) / given
     for interface, stroke in zip(model.interfaces, found, strict=True):
@@ -270,9 +271,7 @@ def moved_contacts(
         faces = (paired.face for paired in there.sides)
         found, basis = contact_points(model, interface, comm, kinematics, *faces, carrier=side)
         if found.unpaired > pairing.unpaired + _UNPAIRED:
-            where, body = "motion.amplitude", "body 1"
-            if not model.is_pair:
-                where, body = interface.table, model.bodies[interface.bodies[0]].name
+            where, body = interface.path("motion.amplitude"), model.bodies[interface.bodies[0]].name
             own, other = interface.faces[side], interface.faces[1 - side]
             raise CaseError(
                 f"{where}: {found.unpaired:.2%} of {own} leaves {other} where {body} is moved by "

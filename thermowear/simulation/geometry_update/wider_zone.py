@@ -168,9 +168,9 @@ class UpdateCounts:
 
 
 def _lost_volumes(system: System) -> dict[str, Any]:
-    """Volumes that the meshes have lost, of several bodies in a table by their names [m³]."""
+    """Volumes that the meshes have lost, by body; of a contact without a name by side [m³]."""
     model, lost = system.model, system.lost
-    if model.is_pair:
+    if not model.named:
         return {f"geometry_volume_{side}_m3": float(v) for side, v in enumerate(lost[0], 1)}
     found = {body.name: {"geometry_volume_m3": 0.0} for body in model.bodies}
     for interface, volumes in zip(model.interfaces, lost, strict=True):

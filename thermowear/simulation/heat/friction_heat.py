@@ -108,7 +108,7 @@ class FrictionHeat:
         rise = np.where(conduction.fixed, conduction.prescribed, self._thermal.initial)
         baseline = self.steps.operators.baseline(rise)
         largest = max(float(np.abs(baseline.rise).max()), self.steps.largest(rise))
-        nothing = np.zeros(3 + 2 * heat_steps.tracked_bodies(self._system))
+        nothing = np.zeros(3 + 2 * len(self._system.model.bodies))
         stored = StoredHeat(rise, conduction.stored_heat(rise), nothing, largest)
         return InitialHeat(stored, baseline)
 
@@ -135,7 +135,7 @@ class FrictionHeat:
         taken = former._balance(stored).stored - self._balance(same).stored
         each = self._gains(same) - former._gains(stored)
         flows = np.array([0.0, taken, abs(taken), *each, *np.abs(each)])
-        return replace(same, turnover=stored.turnover + flows)
+        return replace(same, turnover=stored.turnover + flows[: len(stored.turnover)])
 
     def steady(self, conditions: InterfaceConditions, pressure: np.ndarray) -> TemperatureField:
         """Steady temperatures under a pressure (n,) [Pa]."""
@@ -156,13 +156,15 @@ class FrictionHeat:
     def transient(self, stored: StoredHeat, faces: ThermalState) -> TemperatureField:
         """Transient temperatures, with the error of the heat balance since the start."""
         net, sizes = np.split(stored.turnover[3:], 2)
+        if not len(net):  # of a checkpoint of an earlier version
+            return TemperatureField(faces, stored.rise, self._balance(stored).error, [])
         gains, before = self._gains(stored), np.abs(self.initial.stored.content)[None]
         sizes = sizes + np.abs(gains) + ROUNDING * heat_steps.of_bodies(self._system, before)[0]
         errors = heat_steps.body_balance_errors(net - gains, sizes)
         return TemperatureField(faces, stored.rise, self._balance(stored).error, errors)
 
     def _gains(self, stored: StoredHeat) -> np.ndarray:
-        """Heat stored in each body since the start, (n_bodies,) [J]; (0,) for a pair."""
+        """Heat stored in each body since the start, (n_bodies,) [J]."""
         gained = (stored.content - self.initial.stored.content)[None]
         return heat_steps.of_bodies(self._system, gained)[0]
 

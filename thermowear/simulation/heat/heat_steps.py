@@ -29,18 +29,8 @@ _LEAST = 1e-3
 """Least scale of the balance of a body, relative to the heat turned over in all of them."""
 
 
-def tracked_bodies(system: System) -> int:
-    """Number of bodies whose heat is summed up in time: none of a pair."""
-    return 0 if system.model.is_pair else len(system.model.bodies)
-
-
 def of_bodies(system: System, nodal: np.ndarray) -> np.ndarray:
-    """Sums of nodal values (k, n_owned) over each body, shape (k, n_bodies); every rank calls.
-
-    Shape (k, 0) for a pair.
-    """
-    if not tracked_bodies(system):
-        return np.zeros((len(nodal), 0))
+    """Sums of nodal values (k, n_owned) over each body, shape (k, n_bodies); every rank calls."""
     assert system.thermal is not None
     spaces, bodies = system.thermal.conduction.spaces, system.model.bodies
     result = np.zeros((len(nodal), len(bodies)))
@@ -60,7 +50,7 @@ def into_bodies(
 ) -> np.ndarray:
     """Net heat into each body and the sum of its magnitudes, shape (2, n_bodies) [W].
 
-    Nothing for a pair, shape (2, 0). Every rank calls.
+    Every rank calls.
 
     Parameters
     ----------
@@ -72,8 +62,6 @@ def into_bodies(
     stored : ndarray, shape (n_owned,), optional
         Rate of the nodal stored heat [W].
     """
-    if not tracked_bodies(system):
-        return np.zeros((2, 0))
     heat = thermal.face.nodal_heat(faces, bath=False) + load.heat - stored
     net, sizes = thermal.conduction.into_bodies(rise, heat)
     return of_bodies(system, np.array([net + stored, sizes]))
@@ -126,7 +114,8 @@ class StoredHeat:
         Nodal heat content over the ambient [J].
     turnover : ndarray, shape (3 + 2 n_bodies,)
         Cumulated heat input by friction and through surfaces, heat lost, sum of the magnitudes of
-        all heat in and out; of several bodies also those of `heat_by_body.into_bodies` [J].
+        all heat in and out, and those of `into_bodies`; in checkpoints of earlier versions without
+        the latter [J].
     largest : float
         Largest magnitude so far of the rise of the faces; also inside the bodies where friction is
         not the only heat source [K].
@@ -333,7 +322,7 @@ class HeatSteps:
         exchanged = made + load.magnitude + conduction.exchanged_heat(rise, nodal, load.ambient)
         largest = max(before.largest, float(np.abs(faces.rise).max()), self.largest(rise))
         flows = [made + load.prescribed, lost, exchanged]
-        if len(before.turnover) > len(flows):
+        if len(before.turnover) > len(flows):  # not in those of earlier versions
             flows += [*into_bodies(self._system, self._thermal, faces, rise, load, gained).ravel()]
         return StoredHeat(rise, content, before.turnover + step * np.array(flows), largest)
 

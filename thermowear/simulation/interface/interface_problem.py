@@ -162,9 +162,8 @@ class InterfaceProblem(WearProblem):
             nonlocal found
             found = self._solve(before.worn, conditions, heat, edge, found, step)
             faces = heat.faces(conditions, found.pressure) if heat is not None and faced else None
-            rates, p = self._rates(conditions, step), found.pressure
-            plain = (before.worn + rates.depths(p), None) if self._wear.is_plain else None
-            worn, removed = plain or self._wear.after(before, rates, p)
+            rates = self._rates(conditions, step)
+            worn, removed = self._wear.after(before, rates, found.pressure)
             return InterfaceState(worn, found, before.peak, faces, None, edge, removed)
 
         if guess.touching is not None and before.stored is None:

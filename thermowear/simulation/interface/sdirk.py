@@ -41,7 +41,8 @@ class InterfaceState:
     pointwise : ndarray of bool or None, shape (n,)
         Points at the edge of the wear with pointwise contact, see `contact.wear.wear_edge`.
     removed : ndarray or None, shape (n_wearing, n_interfaces)
-        Volume worn off according to the rates at the contacts [m³]; of several bodies.
+        Volume worn off according to the rates at the contacts [m³]; None where nothing wears, and
+        in checkpoints of earlier versions.
     touching : ndarray or None, shape (n,)
         Parts of the area that exchange heat in imperfect contact, see `fixed_point`; None if each
         point that presses exchanges it wholly.
@@ -316,10 +317,8 @@ class InterfaceWear:
         Distributions of the wear of these bodies.
     layered : bool
         True if a face has layers.
-    is_plain : bool
-        True if depths alone describe the wear of a step: a pair without layers.
     nothing : ndarray or None, shape (n_wearing, n_interfaces)
-        Volumes worn off at the start; None for a pair.
+        Volumes worn off at the start; None where nothing wears.
     """
 
     def __init__(self, system: System):
@@ -327,9 +326,8 @@ class InterfaceWear:
         self._layers = [layers_of(law) for law in self.laws]
         self._ranges = system.contacts.ranges
         self.layered = any(layers.thickness for layers in self._layers)
-        self.is_plain = system.model.is_pair and not self.layered
         self.nothing: np.ndarray | None = None
-        if self.laws and not system.model.is_pair:
+        if self.laws:
             self.nothing = np.zeros((len(self.laws), len(self._ranges)))
             self._areas, self._weights = system.worn_areas[list(system.laws)], system.weights
 

@@ -116,12 +116,11 @@ def principle(system: System, load: np.ndarray, speed: np.ndarray, **conditions:
     """
     at_rest, (worn, _) = system.at_rest, system.divided_motions
     pairs = zip(system.model.interfaces, system.contacts.ranges, strict=True)
-    stops = [one.table for one, points in pairs if not speed[points].all()]
-    sliding = [one.table for one in system.model.interfaces if not one.motion.at_rest]
+    stops = [one.path("motion") for one, points in pairs if not speed[points].all()]
+    sliding = [one.path("motion") for one in system.model.interfaces if not one.motion.at_rest]
     if any(table in sliding for table in stops) or not sliding:
         raise ComputationError(
-            f"{stops[0] if not system.model.is_pair else 'motion'}: no steady state: the sliding "
-            "speed is 0 at some contact points"
+            f"{stops[0]}: no steady state: the sliding speed is 0 at some contact points"
         )
     if worn.shape[1] == 0:
         raise ComputationError(

@@ -14,6 +14,7 @@ from ...model.conditions import Holder
 from ...model.interface import Interface
 from ...model.model import Model
 from ...results import Result
+from ...results.short_names import by_name
 from ..heat.probes import probe_temperatures
 from ..interface.body_state import body_equilibrium
 from ..system.conditions import fluid_forces
@@ -121,7 +122,7 @@ _ROTATIONS = {
 def summarise(end: Snapshot, time: float) -> dict:
     """Numbers of ``summary.json`` of any analysis. Quantities that do not exist are None.
 
-    Those of the interfaces and holders of several bodies are in tables by their names.
+    Those of interfaces and holders with names are in tables by these.
 
     Parameters
     ----------
@@ -149,20 +150,17 @@ def summarise(end: Snapshot, time: float) -> dict:
     turned = replace(end, system=system.with_friction(end.contact.conditions.friction))
     interfaces = [_of_interface(turned, index) for index in range(len(model.interfaces))]
     holders = [_of_holder(turned, index, time) for index in range(len(model.holders))]
-    if model.is_pair:
-        return size | interfaces[0] | holders[0] | state
     bodies = [_of_body(model, k, interfaces) for k in range(len(model.bodies))]
     whole, each = balances(turned, [body["wear_volume_m3"] for body in bodies])
+    contacts, held = [one.name for one in model.interfaces], [one.name for one in model.holders]
     return size | {
+        **by_name("contacts", dict(zip(contacts, interfaces, strict=True))),
+        **by_name("holders", dict(zip(held, holders, strict=True))),
         **state,
         **whole,
         "max_pressure_Pa": float(end.interface.pressure.max()),
         "friction_power_W": sum(found["friction_power_W"] for found in interfaces),
         "wear_dissipation_W": sum(found["wear_dissipation_W"] for found in interfaces),
-        "contacts": {
-            one.name: found for one, found in zip(model.interfaces, interfaces, strict=True)
-        },
-        "holders": dict(zip((h.name for h in model.holders), holders, strict=True)),
         "bodies": {
             body.name: found | errors
             for body, found, errors in zip(model.bodies, bodies, each, strict=True)

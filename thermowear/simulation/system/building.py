@@ -309,14 +309,16 @@ def contacts_of(model: Model, comm) -> tuple[Contacts, RigidHolder]:
 
 
 def require_carried(model: Model, contacts: Contacts, holder: RigidHolder) -> None:
-    """Reject several bodies that can move together without closing any gap.
+    """Reject holders with names that can move together without closing any gap.
+
+    The only holder of a short case may have a motion that nothing opposes and nothing loads.
 
     Raises
     ------
     CaseError
     """
     modes = holder.modes
-    if model.is_pair or not modes.shape[1]:
+    if not model.named or not modes.shape[1]:
         return
     free_modes = [mode for mode, free in zip(holder.rigid_modes, holder.free, strict=True) if free]
     moved = [np.linalg.norm(mode.motion.at(contacts.on_body_1)) for mode in free_modes]

@@ -31,6 +31,11 @@ _GUIDED = {
     "plane-stress": ("x", "z", "rotation"),
 }
 """Rigid motions with a guide force or moment on body 1, by kinematic model."""
+_OPPOSITE = 0.1
+"""Least component of the mean normal against a load direction that has the opposite sense.
+
+The mean normal of a face all round, or of a half beside a plane of symmetry, has no sense.
+"""
 
 
 def rigid_modes(
@@ -76,16 +81,17 @@ def guides(kinematics: str, holder: Holder) -> dict[str, RigidMotion]:
 def load_direction(model: Model, interface: Interface, pairing: Pairing) -> np.ndarray:
     """Unit vector along which the first body of an interface is pressed, shape (gdim,).
 
-    Load direction of its holder, else the opposite of that of the second body, of several bodies
-    with the sense of the mean normal: a body that floats is pressed from both sides. Without a
-    holder that can be pressed, the mean normal.
+    Load direction of its holder, else the opposite of that of the second body, with the sense of
+    the mean normal: a body that floats is pressed from both sides. Without a holder that can be
+    pressed, the mean normal.
     """
     mean = pairing.weights @ pairing.normals
     for sign, body in zip((1.0, -1.0), interface.bodies, strict=True):
         for holder in model.holders:
             if body in holder.bodies and holder.free and not holder.hanging:
                 direction = sign * np.array(holder.load_direction)
-                return direction if model.is_pair or direction @ mean >= 0.0 else -direction
+                opposite = direction @ mean < -_OPPOSITE * pairing.weights.sum()
+                return -direction if opposite else direction
     return mean / np.linalg.norm(mean)
 
 

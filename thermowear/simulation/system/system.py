@@ -212,9 +212,9 @@ class System:
 
     @property
     def ranges_by_name(self) -> dict[str, slice]:
-        """Ranges of the contact points by the names of the interfaces; empty for a pair."""
-        names = [] if self.model.is_pair else [one.name for one in self.model.interfaces]
-        return dict(zip(names, self.contacts.ranges, strict=False))
+        """Ranges of the contact points by the names of the interfaces; empty without names."""
+        pairs = zip(self.model.interfaces, self.contacts.ranges, strict=True)
+        return {one.name: own for one, own in pairs if one.name}
 
     @cached_property
     def weights(self) -> np.ndarray:

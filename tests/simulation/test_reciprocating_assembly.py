@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import thermowear as tw
+from thermowear.model.conditions import Motion
 from thermowear.simulation.analyses.run import run
 from thermowear.simulation.cycles.stroke import strokes
 from thermowear.simulation.from_case import analysis_of, model_of
@@ -176,6 +177,16 @@ def test_a_contact_at_rest_and_a_stroke_too_long():
     long = {"motions.strip.amplitude": "6 mm"}
     with pytest.raises(tw.CaseError, match=r"contacts\.upper: .* of upper_face leaves strip_upper"):
         computed(long)
+
+
+def test_the_only_contact_at_rest():
+    """requirement: bodies that move alike do not slide, also where no other contact does."""
+    case = tw.load(tables(RECIPROCATING))
+    model, settings = model_of(case), analysis_of(case)
+    still = replace(model, interfaces=(replace(model.interface, name="only", motion=Motion()),))
+    with pytest.raises(tw.CaseError, match=r"contacts\.only: its bodies do not slide"):
+        strokes(still, settings)
+    assert abs(strokes(model, settings)) == pytest.approx([1.0], rel=1e-12)
 
 
 def test_bodies_on_both_sides_of_a_slower_one():

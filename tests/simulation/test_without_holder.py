@@ -86,6 +86,7 @@ def test_press_fit(rings):
     expected = lame(1e-3 * OVERLAP) * 2 * math.pi * 0.02 * 0.02
     assert result.summary["contacts"]["fit"]["contact_force_N"] == pytest.approx(expected, rel=1e-3)
     assert result.summary["contacts"]["fit"]["normal_force_N"] < 1e-9 * expected
+    assert result.summary["holders"] == {}
 
 
 def test_press_fit_in_space(tmp_path):

@@ -160,8 +160,7 @@ def strokes(model: Model, settings: ReciprocatingAnalysis) -> np.ndarray:
         If both bodies of an interface of several move alike, or not at all.
     """
     given = 4 * settings.amplitude * settings.frequency
-    moving = any(one.motion.velocity is not None for one in model.interfaces)
-    at_rest = given if len(model.interfaces) == 1 and not moving else 0.0
+    at_rest = 0.0 if model.named else given
     each = [one.motion.velocity for one in model.interfaces]
     found = np.array([at_rest if velocity is None else velocity for velocity in each]) / given
     for interface, stroke in zip(model.interfaces, found, strict=True):

@@ -155,6 +155,7 @@ def summarise(end: Snapshot, time: float) -> dict:
     contacts, held = [one.name for one in model.interfaces], [one.name for one in model.holders]
     return size | {
         **by_name("contacts", dict(zip(contacts, interfaces, strict=True))),
+        **({"holders": {}} if model.named else {}),  # also where supports hold all bodies
         **by_name("holders", dict(zip(held, holders, strict=True))),
         **state,
         **whole,

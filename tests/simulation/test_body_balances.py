@@ -97,16 +97,37 @@ def test_a_moment_that_nothing_bears(monkeypatch):
     assert "balance of forces" not in reason
 
 
-def test_heat_that_is_lost_in_one_body(monkeypatch):
-    """requirement: heat that leaves one body unseen fails the run."""
+def lose_heat(monkeypatch, body):
+    """Let a thousandth of the heat that a body exchanges vanish."""
     into_bodies = Conduction.into_bodies
 
     def lossy(self, rise, heat):
         found = into_bodies(self, rise, heat)
-        found[0, self.spaces.rows(1)] -= 1e-3 * found[1, self.spaces.rows(1)]
+        found[0, self.spaces.rows(body)] -= 1e-3 * found[1, self.spaces.rows(body)]
         return found
 
     monkeypatch.setattr(Conduction, "into_bodies", lossy)
+
+
+def raise_end(result):
+    """Raise the reason for which a run in time has stopped."""
+    raise result.stopped
+
+
+@pytest.mark.parametrize(("body", "name", "other"), [(0, "pad", "disk"), (1, "disk", "pad")])
+@pytest.mark.parametrize("starter", ["disk-brake", "disk-brake-stop"])
+def test_heat_that_is_lost_in_one_of_two(monkeypatch, starter, body, name, other):
+    """requirement: two bodies without names of contacts are told apart, steady and in time."""
+    lose_heat(monkeypatch, body)
+    with pytest.raises(tw.ComputationError) as caught:
+        raise_end(solved(starter, {"mesh.degree": 3}))
+    assert f"heat balance of {name} " in str(caught.value)
+    assert f"heat balance of {other} " not in str(caught.value)
+
+
+def test_heat_that_is_lost_in_one_body(monkeypatch):
+    """requirement: heat that leaves one body unseen fails the run."""
+    lose_heat(monkeypatch, 1)
     for transient, state in ((True, "after running-in"), (False, "steady")):
         with pytest.raises(tw.ComputationError) as caught:
             replace(IN_TIME, transient=transient).run(state)

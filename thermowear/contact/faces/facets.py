@@ -281,7 +281,7 @@ class FacetSet(ABC):
         """
         points = points[:, None]
         on_plane = self.flattened.points(facet, self.flattened.parameters(facet, points))
-        return np.linalg.norm(on_plane - points, axis=2) - self._off_plane[facet]
+        return np.maximum(np.linalg.norm(on_plane - points, axis=2) - self._off_plane[facet], 0.0)
 
     def inside(self, t: np.ndarray) -> np.ndarray:
         """Parameters (..., dim) moved into the facet."""

@@ -91,8 +91,8 @@ def smooth_normals(
     normal, turning = _raw(kind, nodes, outward, facet, t)
     values, slopes = _blending(kind, order_of(kind, nodes.shape[1]), t)
     chosen = corrections[facet]
-    blended = normal + np.einsum("nc,nci->ni", values, chosen)
-    changing = turning + np.einsum("nkc,nci->nki", slopes, chosen)
+    blended = normal + (values[:, None] @ chosen)[:, 0]
+    changing = turning + slopes @ chosen
     return _unit(blended, changing)
 
 
@@ -100,8 +100,8 @@ def _raw(kind, nodes, outward, facet, t) -> tuple[np.ndarray, np.ndarray]:
     """Outward unit normals of the facets, without blending, and their derivatives."""
     dim, on = t.shape[1], nodes[facet]
     table = on_lattice(order_of(kind, nodes.shape[1]), t, 2, kind)
-    tangents = np.einsum("kna,nai->nki", table[1 : 1 + dim], on)
-    bent = np.einsum("klna,nai->nkli", table[_SECOND_DERIVATIVES[dim]], on)
+    derivatives = table.swapaxes(0, 1) @ on
+    tangents, bent = derivatives[:, 1 : 1 + dim], derivatives[:, _SECOND_DERIVATIVES[dim]]
     if dim == 1:
         changing = across(bent[:, 0])[:, None]
     else:

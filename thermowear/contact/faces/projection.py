@@ -105,11 +105,12 @@ def _closest(face: FacetSet, points: np.ndarray) -> tuple[np.ndarray, np.ndarray
         chosen = order[np.unique(point[order], return_index=True)[1]]
         return facet[chosen], t[chosen]
     facets = face.nearby(points)
+    order = face.flat_distances(facets, points).argsort(axis=1, kind="stable")
+    facets = np.take_along_axis(facets, order, axis=1)
     least = face.least_distances(facets, points) + _TOLERANCE * face.extent
-    every = np.arange(len(points))
-    best = facets[every, face.flat_distances(facets, points).argmin(axis=1)]
+    best = facets[:, 0].copy()
     t, distance = _on_facets(face, points, best)
-    for candidate, bound in zip(facets.T, least.T, strict=True):
+    for candidate, bound in zip(facets.T[1:], least.T[1:], strict=True):
         nearer = np.flatnonzero((candidate != best) & (bound < distance))
         if len(nearer):
             at, far = _on_facets(face, points[nearer], candidate[nearer])
@@ -135,18 +136,19 @@ def inside(face: FacetSet, points, facet: np.ndarray, start: np.ndarray) -> np.n
     off = np.flatnonzero((t.min(axis=1) < 0.0) | (t.sum(axis=1) > 1.0))
     if not len(off):
         return t
-    points, facet = points[off], facet[off]
-    on_edges = np.stack([_on_edge(face, points, facet, t[off], edge) for edge in _EDGES])
-    distance = [np.linalg.norm(face.points(facet, at) - points, axis=1) for at in on_edges]
-    t[off] = on_edges[np.argmin(distance, axis=0), np.arange(len(off))]
+    points, facet = np.repeat(points[off], 3, axis=0), np.repeat(facet[off], 3)
+    at = _on_edges(face, points, facet, np.repeat(t[off], 3, axis=0), np.tile([0, 1, 2], len(off)))
+    distance = np.linalg.norm(face.points(facet, at) - points, axis=1).reshape(-1, 3)
+    t[off] = at.reshape(-1, 3, 2)[np.arange(len(off)), distance.argmin(axis=1)]
     return t
 
 
-def _on_edge(face: FacetSet, points, facet, start, edge: np.ndarray) -> np.ndarray:
-    """Parameters (n, 2) of the closest points of an edge, given by its first corner and vector."""
-    origin, along = edge
-    s = np.clip((start - origin) @ along / (along @ along), 0.0, 1.0)[:, None]
-    s = within(face, points, facet, s, (0.0, 1.0), origin, along[None])
+def _on_edges(face: FacetSet, points, facet, start, edge: np.ndarray) -> np.ndarray:
+    """Parameters (n, 2) of the closest points of edges of triangles, by their numbers (n,)."""
+    origin, along = _EDGES[edge].swapaxes(0, 1)
+    s = np.sum((start - origin) * along, axis=1) / np.sum(along**2, axis=1)
+    s = np.clip(s, 0.0, 1.0)[:, None]
+    s = within(face, points, facet, s, (0.0, 1.0), origin, along[:, None])
     return np.clip(origin + s * along, 0.0, 1.0)
 
 
@@ -156,7 +158,7 @@ def within(
     facet: np.ndarray,
     start: np.ndarray,
     bounds: tuple[float, float],
-    origin: np.ndarray | float = 0.0,
+    origin: np.ndarray | None = None,
     axes: np.ndarray | None = None,
 ) -> np.ndarray:
     """Parameters of the closest points of given facets, by the Gauss-Newton method.
@@ -170,21 +172,25 @@ def within(
         Initial parameters s.
     bounds : tuple of float
         Bounds of the parameters; a parameter is fixed at a bound that a step would cross.
-    origin, axes : ndarray, shape (dim,) and (k, dim), optional
-        Subspace ``t = origin + s axes`` of the parameters of the facet, by default all of it.
+    origin, axes : ndarray, shape (n, dim) and (n, k, dim), optional
+        Subspaces ``t = origin + s axes`` of the parameters of the facets, by default all of them.
     """
-    axes = np.eye(face.dim) if axes is None else axes
     s, moving = start.copy(), np.arange(len(start))
     for _ in range(_MAX_NEWTON_STEPS):
         now, on = s[moving], facet[moving]
-        t = origin + now @ axes
-        places, tangents = face.points_and_tangents(on, t)
-        offset, tangents = places - points[moving], axes @ tangents
+        if origin is None or axes is None:
+            places, tangents = face.points_and_tangents(on, now)
+        else:
+            along = axes[moving]
+            t = origin[moving] + (now[:, None] @ along)[:, 0]
+            places, tangents = face.points_and_tangents(on, t)
+            tangents = along @ tangents
+        offset = places - points[moving]
         slope = np.einsum("nki,ni->nk", tangents, offset)
         held = ((now <= bounds[0]) & (slope > 0)) | ((now >= bounds[1]) & (slope < 0))
         tangents = np.where(held[:, :, None], 0.0, tangents)
         matrix = np.einsum("nki,nli->nkl", tangents, tangents) + held[:, :, None] * np.eye(
-            len(axes)
+            now.shape[1]
         )
         step = np.linalg.solve(matrix, np.where(held, 0.0, slope)[:, :, None])[:, :, 0]
         s[moving] = np.clip(now - step, *bounds)

@@ -21,6 +21,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.sparse as sp
 
 from ...errors import ComputationError
 from ..interfaces import Law, LocalState
@@ -140,28 +141,35 @@ class Common:
 
     Attributes
     ----------
-    means : RateSum
-        Summands of each mean at the points, shape (K, n).
+    rates : RateSum
+        Rates of which the means are formed, one summand each.
+    rows : sequence of sparse array, shape (K_i, n)
+        Weights of the points in the means of each rate; K is the number of all means.
     reach : ndarray, shape (n, K)
         Weights N of each mean at each point.
     """
 
-    means: RateSum
+    rates: RateSum
+    rows: Sequence[sp.csr_array]
     reach: np.ndarray
 
     @classmethod
     def none(cls, n: int) -> Common:
         """Empty set of means at n points."""
-        return cls(PowerSum(np.zeros((0, n)), np.zeros(0)), np.zeros((n, 0)))
+        return cls(PowerSum(np.zeros((0, n)), np.zeros(0)), [], np.zeros((n, 0)))
 
-    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def at(self, pressure: np.ndarray) -> tuple[np.ndarray, np.ndarray | sp.csr_array]:
         """Means (K,), and their derivatives at positive pressures, shape (K, n)."""
-        terms, slopes = self.means.terms(pressure)
-        return terms.sum(axis=1), slopes
+        if not self.rows:
+            return np.zeros(0), self.reach.T
+        rates, slopes = self.rates.terms(pressure)
+        means = [rows @ rate for rows, rate in zip(self.rows, rates, strict=True)]
+        changes = [rows * slope for rows, slope in zip(self.rows, slopes, strict=True)]
+        return np.concatenate(means), sp.csr_array(sp.vstack(changes))
 
     def scaled(self, pressure: np.ndarray, value: float) -> Common:
-        """Sum scaled by a pressure at each point and by a value."""
-        return Common(self.means.scaled(pressure, value), self.reach)
+        """Means scaled by a pressure at each point and by a value."""
+        return Common(self.rates.scaled(pressure, value), self.rows, self.reach)
 
 
 STEPS = 200
@@ -281,11 +289,15 @@ class _Linearised:
             conditions.force_modes.T @ pressure - conditions.load, multipliers[k:] - passed
         )
         self.modes = np.column_stack([conditions.normal_modes, -conditions.common.reach])
-        self.rows = np.column_stack([conditions.force_modes, -passed_slope.T])
+        self.force_modes, self.passed_slope = conditions.force_modes, passed_slope
         self.compliance = 1 / (slope + separation / pressure)
-        self.tangent = self.rows.T @ (self.compliance[:, None] * self.modes)
+        self.tangent = self.forces(self.compliance[:, None] * self.modes)
         self.tangent[k:, k:] += np.eye(len(passed))
         self.rate_scale = np.abs(rate).max()
+
+    def forces(self, pressures: np.ndarray) -> np.ndarray:
+        """Loads and changes of the means by pressures (n, ...), shape (k + K, ...)."""
+        return np.concatenate([self.force_modes.T @ pressures, -(self.passed_slope @ pressures)])
 
     def error(self) -> float:
         """Largest violation of any condition, relative."""
@@ -297,7 +309,7 @@ class _Linearised:
     def step(self, product: np.ndarray):
         """Newton step of (V, S), p and s for a change of the products p s by `product`."""
         drive = product / self.pressure - self.residual
-        right = -self.balance - self.rows.T @ (self.compliance * drive)
+        right = -self.balance - self.forces(self.compliance * drive)
         multipliers = np.linalg.lstsq(self.tangent, right, rcond=None)[0]
         pressure = self.compliance * (self.modes @ multipliers + drive)
         separation = (product - self.separation * pressure) / self.pressure

@@ -18,6 +18,7 @@ from typing import TypeGuard
 
 import numpy as np
 import scipy
+import scipy.sparse as sp
 
 from ...errors import ComputationError
 from ..distribution import IN_PLACE, Distribution
@@ -269,10 +270,10 @@ def _common(
     tracks = [(k, track.means) for k, track in enumerate(spread) if track.means is not None]
     if not tracks:
         return None
-    owners = [k for k, means in tracks for _ in means.rows]
-    rows = np.vstack([means.rows for _, means in tracks])
-    rates = _rate_sum([laws[k] for k in owners], factors[owners], rows)
-    return Common(rates, np.hstack([means.reach for _, means in tracks]))
+    owners, every = [k for k, _ in tracks], [means for _, means in tracks]
+    rates = _rate_sum([laws[k] for k in owners], factors[owners], np.ones(factors[owners].shape))
+    rows = [sp.csr_array(means.rows) for means in every]
+    return Common(rates, rows, np.hstack([means.reach for means in every]))
 
 
 def _check_motions(weights: np.ndarray, normal_modes: np.ndarray) -> None:

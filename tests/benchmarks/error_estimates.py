@@ -347,16 +347,20 @@ def _mesh_files() -> list[Study]:
         for name, quantities in (("two-pads-3d", hot), ("own-mesh-3d", ("shape",)))
     ]
     own.append((own[1][0], (*own[1][1], 'analysis={type="initial"}'), ("pressure",)))
-    parts = {"lining": "cad-pad.step", "plate": "cad-pad.step", "disk": "cad-disk.step"}
-    files = tuple(f"geometry.paths.{part}={folder / file}" for part, file in parts.items())
-    for size in (15, 10):
-        sizes = f"mesh.contact_size={size} mm", f"mesh.size={2 * size} mm"
-        own.append(("cad-pad", files + sizes, hot))
+    own += [("cad-pad", cad_pad(size), hot) for size in (15, 10)]
     return [
         _richer(name, words, degree, quantities)
         for name, words, quantities in own
         for degree in (1, 2)
     ]
+
+
+def cad_pad(size: float) -> tuple[str, ...]:
+    """Overrides of the starter of that name for elements of a size at the contact [mm]."""
+    folder = Path(starters.__file__).parent
+    parts = {"lining": "cad-pad.step", "plate": "cad-pad.step", "disk": "cad-disk.step"}
+    files = (f"geometry.paths.{part}={folder / file}" for part, file in parts.items())
+    return *files, f"mesh.contact_size={size} mm", f"mesh.size={2 * size} mm"
 
 
 def _richer(name: str, words: tuple[str, ...], degree: int, quantities: tuple[str, ...]) -> Study:

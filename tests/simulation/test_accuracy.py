@@ -26,6 +26,7 @@ from ..benchmarks.error_estimates import (
     PAIRS,
     RING,
     Study,
+    cad_pad,
     ellipse,
     line,
     on_the_same_cells,
@@ -245,6 +246,13 @@ def test_errors_of_several_bodies():
             for own, other in zip(found.contacts.values(), fine.contacts.values(), strict=True)
         )
         assert estimates(found)[quantity] / 3 < true < 3 * estimates(found)[quantity]
+
+
+def test_glued_bodies_behind_the_contact():
+    """requirement: a thin back plate that linear cells do not bend makes the shape wrong, too."""
+    errors = on_the_same_cells("cad-pad", *cad_pad(15), "mesh.degree=2", quantities=("shape",))
+    found = run_starter("cad-pad", *cad_pad(15), "mesh.degree=1")
+    assert errors(found)["shape"] < 5 * estimates(found)["shape"]
 
 
 def relative_change(coarse, fine, quantity):

@@ -183,21 +183,17 @@ class ElasticForms:
         ε = self.kinematics.strain(self.body.mesh, u)
         return self.kinematics.stress(ε, (λ, μ), 0.0 if rise is None else m * rise)
 
-    def virtual_work(self, u, δu, degree: int):
-        """Form of the virtual work of the stress of u on the strain of δu [J].
-
-        `degree` is the polynomial degree for which the quadrature is exact.
-        """
+    def virtual_work(self, u, δu, measure: ufl.Measure):
+        """Form of the virtual work of the stress of u on the strain of δu [J]."""
         mesh, (λ, μ, _) = self.body.mesh, self.lame
         ε, δε = self.kinematics.strain(mesh, u), self.kinematics.strain(mesh, δu)
         density = λ * ufl.tr(ε) * ufl.tr(δε) + 2 * μ * ufl.inner(ε, δε)
-        return self.kinematics.integral(mesh, density, section_measure(mesh, degree))
+        return self.kinematics.integral(mesh, density, measure)
 
-    def thermal_work(self, rise, δu, degree: int):
+    def thermal_work(self, rise, δu, measure: ufl.Measure):
         """Form of the work of the thermal stress of a temperature rise on the strain of δu [J]."""
         mesh = self.body.mesh
         ε = self.kinematics.strain(mesh, δu)
-        measure = section_measure(mesh, degree)
         return self.kinematics.integral(mesh, self.lame[2] * rise * ufl.tr(ε), measure)
 
     def traction_work(self, surface: str, traction: np.ndarray) -> Callable:
@@ -218,7 +214,8 @@ class ElasticForms:
     def stiffness(self, space: fem.FunctionSpace, blocked: bool = False) -> PETSc.Mat:
         """Stiffness without supports in a space, see `assembled_matrix`. Every rank calls."""
         u, δu = ufl.TrialFunction(space), ufl.TestFunction(space)
-        work = self.virtual_work(u, δu, space.ufl_element().degree)
+        measure = section_measure(self.body.mesh, space.ufl_element().degree)
+        work = self.virtual_work(u, δu, measure)
         return assembled_matrix(work, blocked=blocked)
 
     def coarse_stiffness(self, linear: fem.FunctionSpace, degree: int) -> PETSc.Mat:
@@ -239,7 +236,8 @@ class ElasticForms:
         rise, δu = ufl.TrialFunction(rises), ufl.TestFunction(space)
         if only is not None:
             rise = self.body.per_part({only: 1.0}) * rise
-        return self.thermal_work(rise, δu, rises.ufl_element().degree)
+        measure = section_measure(self.body.mesh, rises.ufl_element().degree)
+        return self.thermal_work(rise, δu, measure)
 
     @cached_property
     def least_compressibility(self) -> float:

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import cache
-from itertools import product
+from itertools import compress, product
 
 from petsc4py import PETSc
 
@@ -185,6 +185,8 @@ class EnrichedProblem:
             for space, more in zip(spaces.each, surplus.each, strict=True)
         ]
         regular = [() for _ in forms] if regular is None else regular
+        given = forms, regular
+        forms, regular = ([self._present(*one) for one in enumerate(each)] for each in given)
         self._forces_of, self._regular = (
             [self._actions(terms, part) for part in (spaces, surplus)] for terms in (forms, regular)
         )
@@ -202,6 +204,21 @@ class EnrichedProblem:
             field, test = sum(self._values[index]), ufl.TestFunction(space)
             result.append([compiled(self._restricted(term(field, test), index)) for term in terms])
         return result
+
+    def _present(self, index: int, terms: Sequence[Callable]) -> list[Callable]:
+        """Terms of a body without those that no cell or facet with a surplus has on any rank.
+
+        The first one remains: it gives the matrix its pattern.
+        """
+        if self._near is None:
+            return list(terms)
+        test, counts = ufl.TestFunction(self.surplus.each[index]), []
+        for term in terms[1:]:
+            form = self._restricted(term(self._values[index][1], test), index)
+            domains = [domain for part in form.integrals() for _, domain in part.subdomain_data()]
+            counts.append(max(map(len, domains)))
+        present = np.any(self._comm.allgather(counts), axis=0)
+        return [*terms[:1], *compress(terms[1:], present)]
 
     def _restricted(self, form: ufl.Form, index: int) -> ufl.Form:
         """Form of a body, integrated over the cells with a surplus and their facets."""
@@ -221,9 +238,12 @@ class EnrichedProblem:
                 function.x.scatter_forward()
         return [values[0] + values[1] for values in self._values]
 
-    def loads(self, forms: Sequence[Callable]) -> np.ndarray:
-        """Load vector of linear forms, one for each body, as functions of the test function."""
-        return np.concatenate([self.spaces.loads(forms), self.surplus.loads(forms)])
+    def surplus_loads(self, forms: Sequence[Callable]) -> np.ndarray:
+        """Loads on the surplus of linear forms of its test function, one for each body."""
+        tests = map(ufl.TestFunction, self.surplus.each)
+        each = enumerate(zip(forms, tests, strict=True))
+        every = [self._restricted(form(test), index) for index, (form, test) in each]
+        return np.concatenate([assembled(compiled(form)) for form in every])
 
     def residual(self, field: np.ndarray, loads: np.ndarray, more: np.ndarray) -> np.ndarray:
         """Residual of a solution on the space under loads, zero in fixed values.
@@ -292,17 +312,24 @@ def _sum(forms: Sequence[Sequence[fem.Form]]) -> np.ndarray:
     return np.concatenate([np.sum([assembled(t) for t in terms], axis=0) for terms in forms])
 
 
-def cells_near(bodies: Bodies, surfaces: Sequence[str], layers: int) -> list[np.ndarray]:
-    """Owned cells of each body within some layers of cells from surfaces. Every rank calls."""
-    return [_cells_near(body, surfaces, layers) for body in bodies.each]
+def cells_near(
+    bodies: Bodies, facets: Sequence[tuple[np.ndarray, np.ndarray]], layers: int
+) -> list[np.ndarray]:
+    """Owned cells of each body within some layers of cells from some facets. Every rank calls.
+
+    Facets are given for each body by local cells and their local facets, on any rank that has them.
+    """
+    return [_cells_near(body, *own, layers) for body, own in zip(bodies.each, facets, strict=True)]
 
 
-def _cells_near(body: BodyMesh, surfaces: Sequence[str], layers: int) -> np.ndarray:
+def _cells_near(
+    body: BodyMesh, cells: np.ndarray, local_facets: np.ndarray, layers: int
+) -> np.ndarray:
     space = fem.functionspace(body.mesh, ("Lagrange", 1))
     nodes = space.dofmap.list
-    facets = np.concatenate([body.facets(surface) for surface in surfaces])
+    corners = np.array(basix.topology(reference_element(body.mesh, 1).cell_type)[-2])
     marked = np.zeros(space.dofmap.index_map.size_local + space.dofmap.index_map.num_ghosts, bool)
-    marked[fem.locate_dofs_topological(space, body.mesh.topology.dim - 1, facets)] = True
+    marked[np.take_along_axis(nodes[cells], corners[local_facets], axis=1)] = True
     for _ in range(layers):
         marked = _on_any_rank(space, marked)
         near = marked[nodes].any(axis=1)

@@ -306,19 +306,18 @@ class Flow:
     velocity: ufl.core.expr.Expr
     delay: ufl.core.expr.Expr
 
-    def carried(self, T, δT, degree: int):
+    def carried(self, T, δT, measure: ufl.Measure):
         """Form of the heat carried inside the body [W K]."""
         along = self.capacity * ufl.dot(self.velocity, ufl.grad(T))
-        return self._integral(along * δT, degree)
+        return self._integral(along * δT, measure)
 
-    def upwind_diffusion(self, T, δT, degree: int):
+    def upwind_diffusion(self, T, δT, measure: ufl.Measure):
         """Form of the diffusion along the flow by the stabilising test functions [W K]."""
         along = self.capacity * ufl.dot(self.velocity, ufl.grad(T))
-        return self._integral(along * self.delay * ufl.dot(self.velocity, ufl.grad(δT)), degree)
+        return self._integral(along * self.delay * ufl.dot(self.velocity, ufl.grad(δT)), measure)
 
-    def _integral(self, density, degree: int):
-        mesh = self.capacity.function_space.mesh
-        return self.kinematics.integral(mesh, density, section_measure(mesh, degree))
+    def _integral(self, density, measure: ufl.Measure):
+        return self.kinematics.integral(self.capacity.function_space.mesh, density, measure)
 
 
 @dataclass(frozen=True)

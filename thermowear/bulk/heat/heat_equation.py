@@ -146,13 +146,13 @@ def _assembled(
     moving = None
     if passage is not None and set(passage.parts) & set(body.parts):
         moving = advection(body, kinematics, space, passage, conductivities, capacities, choice)
-    conductivity = assembled_matrix(conducting(body, kinematics, conductivities, degree)(T, δT))
+    measure = section_measure(body.mesh, degree)
+    conductivity = assembled_matrix(conducting(body, kinematics, conductivities, measure)(T, δT))
     cooled = _cooled(body, kinematics, cooling, conductivity, (T, δT))
     conductivity.axpy(1.0, cooled, PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
     capacity = None
     if len(capacities) == len(own):
         test = δT if moving is None else δT + moving.upwind
-        measure = section_measure(body.mesh, degree)
         density = body.per_part(capacities) * T * test
         capacity = assembled_matrix(kinematics.integral(body.mesh, density, measure))
     return _BodyMatrices(conductivity, cooled, capacity, moving)
@@ -190,11 +190,13 @@ def _outflow(block: _BodyMatrices, space: fem.FunctionSpace) -> np.ndarray:
 
 
 def conducting(
-    body: BodyMesh, kinematics: Kinematics, conductivities: dict[str, float], degree: int
+    body: BodyMesh,
+    kinematics: Kinematics,
+    conductivities: dict[str, float],
+    measure: ufl.Measure,
 ):
     """Bilinear form of conduction, as a function of trial and test functions [W K]."""
     mesh, k = body.mesh, body.per_part(conductivities)
-    measure = section_measure(mesh, degree)
     return lambda T, δT: kinematics.integral(
         mesh, k * ufl.inner(ufl.grad(T), ufl.grad(δT)), measure
     )

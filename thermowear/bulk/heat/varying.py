@@ -21,7 +21,7 @@ import ufl
 from ..bodies import Bodies
 from ..compiled import assembled_matrix
 from ..elasticity.elasticity import Elasticity, ThermalForces
-from ..kinematics import Kinematics
+from ..kinematics import Kinematics, section_measure
 from ..solvers.direct import multiply
 from ..spaces import Spaces, block_diagonal
 from .conduction import Conduction
@@ -155,7 +155,8 @@ def varying_conduction(
         alone = {part: (part == name) * m.conductivity for part, m in materials.items()}
         blocks = []
         for body, space in zip(bodies.each, spaces.each, strict=True):
-            form = conducting(body, kinematics, alone, spaces.degree)
+            measure = section_measure(body.mesh, spaces.degree)
+            form = conducting(body, kinematics, alone, measure)
             terms = form(ufl.TrialFunction(space), ufl.TestFunction(space))
             blocks.append(assembled_matrix(terms))
         parts.append(VaryingConductivity(name, factor, ambient, block_diagonal(blocks)))

@@ -69,21 +69,34 @@ def vector_trace(spaces: Spaces, contacts: Contacts, directions: np.ndarray) -> 
     directions : ndarray, shape (n_points, gdim)
         Direction e at each point; not necessarily a unit vector (traction of sliding contact).
     """
-    each = [_vector_trace(spaces, pairing, directions[points]) for pairing, points in contacts]
-    return each[0] if len(each) == 1 else sp.hstack(each).tocsr()
+    return in_directions(component_traces(spaces, contacts), directions)
 
 
-def _vector_trace(spaces: Spaces, pairing: Pairing, directions: np.ndarray) -> sp.csr_matrix:
+def in_directions(components: Sequence[sp.csr_matrix], directions: np.ndarray) -> sp.csr_matrix:
+    """`vector_trace` from `component_traces`."""
+    along = zip(components, directions.T, strict=True)
+    return sum((sp.csr_matrix(one.multiply(part)) for one, part in along), start=0).tocsr()
+
+
+def component_traces(spaces: Spaces, contacts: Contacts) -> list[sp.csr_matrix]:
+    """Traces as in `vector_trace` along each coordinate."""
+    each = [_component_traces(spaces, pairing) for pairing in contacts.each]
+    if len(each) == 1:
+        return each[0]
+    return [sp.hstack(one).tocsr() for one in zip(*each, strict=True)]
+
+
+def _component_traces(spaces: Spaces, pairing: Pairing) -> list[sp.csr_matrix]:
     count, width = len(pairing.weights), spaces.components
-    result = sp.csr_matrix((spaces.owned, count))
+    result = [sp.csr_matrix((spaces.owned, count))] * width
     for sign, side in zip((-1.0, 1.0), pairing.sides, strict=True):
         index = side.face.body
         nodes, point, values = _local_values(spaces.each[index], side)
         for component in range(width):
-            scaled = sign * directions[point, component] * values
             dofs = nodes * width + component
-            result = result + gather_rows(spaces, index, dofs, point, scaled, count)
-    return result.tocsr()
+            added = gather_rows(spaces, index, dofs, point, sign * values, count)
+            result[component] = result[component] + added
+    return result
 
 
 def _local_values(space: fem.FunctionSpace, side: PairedFace):

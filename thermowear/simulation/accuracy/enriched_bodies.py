@@ -6,14 +6,16 @@ change with the better discretisation.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
+import ufl
 
+from ...bulk.bodies import BodyMesh
 from ...bulk.elasticity.elasticity import fixed_values
 from ...bulk.elasticity.enriched import EnrichedProblem, cells_near, surplus_spaces
 from ...bulk.heat.conduction import Conduction
@@ -24,10 +26,13 @@ from ...bulk.heat.heat_equation import (
     surface_heat,
     transferring,
 )
-from ...contact.operators.condensation import face_traces, gap_trace, vector_trace
+from ...bulk.kinematics import section_measure
+from ...compat import exterior_facet_domain
+from ...contact.operators.condensation import component_traces, face_traces, in_directions
 from ...contact.operators.exchange_matrix import BaselineResponse
 from ...contact.operators.heat_exchange import InterfaceHeat
 from ...contact.operators.pressure import dense, scaled
+from ...contact.search.pairing import PairedFace
 from ...model.conditions import Heat
 from ...parallel import sum_over_ranks
 from ..heat.friction_heat import TemperatureField
@@ -37,7 +42,10 @@ from ..system.system import System
 from ..system.thermal_system import ThermalSystem, conducting_parts, cooling
 
 _LAYERS = 2
-"""Layers of cells in space that have a surplus."""
+"""Layers of cells in space that have a surplus.
+
+Temperatures need one only from degree 2 on: details stay at the face, but bodies bend as a whole.
+"""
 
 
 @dataclass(frozen=True)
@@ -62,12 +70,11 @@ class EnrichedBodies:
     Parameters
     ----------
     system : System
-    near : list of ndarray or None
-        See `near_contact`.
     """
 
-    def __init__(self, system: System, near: list[np.ndarray] | None):
+    def __init__(self, system: System):
         elastic, degree = system.elastic, system.model.discretisation.degree
+        near = _near_contact(system, _LAYERS, elastic.joints.surfaces)
         bodies = elastic.bodies
         surplus = surplus_spaces(bodies, degree, bodies.dim)
         clamped, *guided = system.model.supports
@@ -82,14 +89,16 @@ class EnrichedBodies:
             elastic.spaces,
             surplus,
             [
-                (partial(body.virtual_work, degree=_gradients(self._degree, near)),)
+                (partial(body.virtual_work, measure=_measure(body.body, self._degree, 2)),)
                 for body in elastic.each
             ],
             _solver(system, elastic.solve),
             (elastic.fixed, np.concatenate(held)),
             near=near,
         )
-        self._trace = sp.vstack([system.trace, gap_trace(surplus, system.contacts)])
+        self._components = component_traces(surplus, system.contacts)
+        details = in_directions(self._components, system.contacts.normals)
+        self._trace = sp.vstack([system.trace, details])
 
     def opening(self, contact: ContactState, state: BodyState, heated: TemperatureChange | None):
         """Change of the gap at the points by the next degree in a state, shape (n,) [m]."""
@@ -101,9 +110,11 @@ class EnrichedBodies:
                 rises = thermal.conduction.spaces.functions(before.rise, "rise")
             else:
                 rises = heated.rises
-            bodies = zip(system.elastic.each, rises, strict=True)
-            works = [partial(b.thermal_work, rise, degree=self._degree) for b, rise in bodies]
-            loads = loads + problem.surplus.loads(works)
+            works = [
+                partial(b.thermal_work, rise, measure=_measure(b.body, self._degree, 1))
+                for b, rise in zip(system.elastic.each, rises, strict=True)
+            ]
+            loads = loads + problem.surplus_loads(works)
             if heated is not None:
                 more = problem.spaces.loads(works) - thermal.forces(before.rise)
         residual = problem.residual(problem.field(state.displacement), loads, more)
@@ -124,18 +135,22 @@ class EnrichedBodies:
         fluid = fluid_pressure(system.model, system.contacts)
         if fluid is not None:
             traction = traction + fluid[:, None] * system.contacts.normals
-        loads = vector_trace(problem.surplus, system.contacts, traction) @ system.weights
+        forces = (system.weights[:, None] * traction).T
+        parts = zip(self._components, forces, strict=True)
+        loads = np.sum([component @ force for component, force in parts], axis=0)
         for works in surface_loads(system.model, system.elastic):
-            loads = loads + problem.surplus.loads(works)
+            loads = loads + problem.surplus_loads(works)
         return loads
 
 
-def _gradients(degree: int, near: list[np.ndarray] | None) -> int:
-    """Degree for the quadrature of products of gradients, which have one degree less.
+def _measure(body: BodyMesh, degree: int, derivatives: int) -> ufl.Measure:
+    """Measure for products of two functions of a degree, of which some are derivatives.
 
-    Not in a section, whose radii are in it, too.
+    In space exact on straight cells; not in a section, whose radii are in it, too.
     """
-    return degree if near is None else degree - 1
+    if body.mesh.topology.dim == 2:
+        return section_measure(body.mesh, degree)
+    return ufl.dx(metadata={"quadrature_degree": 2 * degree - derivatives})
 
 
 def _solver(system: System, solve: Callable) -> Callable[[np.ndarray], np.ndarray]:
@@ -143,16 +158,34 @@ def _solver(system: System, solve: Callable) -> Callable[[np.ndarray], np.ndarra
     return np.zeros_like if system.choice.iterative else solve
 
 
-def near_contact(system: System) -> list[np.ndarray] | None:
-    """Cells at the contacts, to which the next degree is restricted in space; None in a section.
+def _near_contact(
+    system: System, layers: int, glued: Sequence[str] = ()
+) -> list[np.ndarray] | None:
+    """Cells at the contact points, to which the next degree is restricted in space; None in plane.
 
-    There it would cost more than the solution. Errors elsewhere reach the contact as a change that
-    varies little along it.
+    Elsewhere it would cost more than the solution. Errors there, also in other parts of a face such
+    as the track of a brake pad, reach the contact as a change that varies little along it; but not
+    those of bodies behind it, such as back plates, of which glued faces are given.
     """
-    if system.bodies.dim == 2:
+    bodies = system.bodies
+    if bodies.dim == 2:
         return None
-    faces = [name for interface in system.model.interfaces for name in interface.faces]
-    return cells_near(system.bodies, faces, _LAYERS)
+    sides = [side for pairing in system.contacts.each for side in pairing.sides]
+    facets = []
+    for index, body in enumerate(bodies.each):
+        own = [_local_facets(side, system.comm.rank) for side in sides if side.face.body == index]
+        if not own:
+            behind = [body.facets(surface) for surface in glued]
+            own = [exterior_facet_domain(body.mesh, f).reshape(-1, 2).T for f in behind]
+        facets.append(np.concatenate([np.empty((2, 0), dtype=np.int64), *own], axis=1))
+    return cells_near(bodies, facets, layers)
+
+
+def _local_facets(side: PairedFace, rank: int) -> np.ndarray:
+    """Cells of a rank at the points of a face and their local facets, shape (2, n_facets)."""
+    face, touched = side.face, np.unique(side.facet)
+    touched = touched[face.rank[touched] == rank]
+    return np.array([face.cell[touched], face.local_facet[touched]])
 
 
 def temperature_change(
@@ -162,7 +195,6 @@ def temperature_change(
     temperatures: TemperatureField,
     conductance: np.ndarray,
     time: float,
-    near: list[np.ndarray] | None,
 ) -> TemperatureChange:
     """Change of temperatures by the next degree for a given friction heat; collective.
 
@@ -171,7 +203,7 @@ def temperature_change(
     Anal. 41 (2003) 1585).
     """
     conduction, face = thermal.conduction, thermal.face
-    problem = _conducting(system, heat, thermal, near)
+    problem = _conducting(system, heat, thermal)
     details = face_traces(problem.surplus, system.contacts)
     traces = [sp.vstack(both) for both in zip(face.traces, details, strict=True)]
     fluxes = zip(details, temperatures.faces.flux, strict=True)
@@ -257,9 +289,7 @@ def _levelled(rises: np.ndarray, own: np.ndarray, conductance: np.ndarray) -> np
     return rises + share * (rises[1] - rises[0]) * np.array([[1.0], [-1.0]])
 
 
-def _conducting(
-    system: System, heat: Heat, thermal: ThermalSystem, near: list[np.ndarray] | None
-) -> EnrichedProblem:
+def _conducting(system: System, heat: Heat, thermal: ThermalSystem) -> EnrichedProblem:
     """Conduction with its surplus space; corrections transfer heat to a bath at both faces."""
     conduction, model, bodies = thermal.conduction, system.model, system.bodies
     degree, kinematics = model.discretisation.degree + 1, system.elastic.kinematics
@@ -276,14 +306,15 @@ def _conducting(
     terms, only_corrections = [], []
     for index, body in enumerate(bodies.each):
         own = [
-            conducting(body, kinematics, conductivities, _gradients(degree, near)),
+            conducting(body, kinematics, conductivities, _measure(body, degree, 2)),
             *transferring(body, kinematics, given_h),
         ]
         corrected = transferring(body, kinematics, shifts)
         flow = None if advection is None else advection.flows[index]
         if flow is not None:
-            own.append(partial(flow.carried, degree=degree))
-            corrected.append(partial(flow.upwind_diffusion, degree=degree))
+            measure = _measure(body, degree, 0)  # the velocity is linear
+            own.append(partial(flow.carried, measure=measure))
+            corrected.append(partial(flow.upwind_diffusion, measure=measure))
         if even is not None and any(system.comm.allgather(_passes(conduction, index))):
             given[surplus.rows(index)] = True  # no details along paths of even temperature
         terms.append(own)
@@ -296,7 +327,7 @@ def _conducting(
         (conduction.fixed, given),
         only_corrections,
         symmetric=advection is None,
-        near=near,
+        near=_near_contact(system, 1 if degree > 2 else _LAYERS),
     )
 
 

@@ -38,7 +38,6 @@ from .enriched_bodies import (
     EnrichedBodies,
     TemperatureChange,
     heated_faces,
-    near_contact,
     temperature_change,
 )
 
@@ -128,13 +127,12 @@ def estimate_errors(analysis: Analysis, end: Snapshot, time: float) -> ErrorEsti
     )
     if analysis.type == "reciprocating":
         missing["max_pressure_of_cycle"] = "all estimates are those of mid-stroke"
-    near = near_contact(system)
-    heated, why = _temperature_change(end, time, near)
+    heated, why = _temperature_change(end, time)
     if heated is not None:
         errors["temperature"] = _of_temperature(end, heated, end.interface.pressure)
     if errors["temperature"] is None:
         missing["temperature"] = why or _AMBIENT
-    bodies = EnrichedBodies(system, near)
+    bodies = EnrichedBodies(system)
     opened = bodies.opening(end.contact, end.bodies, heated)
     flat = any(_flat_facets(side) for one in system.contacts.each for side in one.sides)
     if not end.interface.pressure.any():
@@ -194,9 +192,7 @@ def _wear_change(end: Snapshot, enriched: np.ndarray) -> np.ndarray:
     return _wear_per_pressure(end.system, end.interface) * (enriched - end.interface.pressure)
 
 
-def _temperature_change(
-    end: Snapshot, time: float, near: list[np.ndarray] | None
-) -> tuple[TemperatureChange | None, str | None]:
+def _temperature_change(end: Snapshot, time: float) -> tuple[TemperatureChange | None, str | None]:
     """Change of the temperatures by the next degree, or the reason why there is no estimate."""
     thermal, heat = end.system.thermal, end.system.model.heat
     found = end.bodies.temperatures
@@ -207,7 +203,7 @@ def _temperature_change(
     if thermal.varies:
         return None, "conductivity or expansion change with temperature"
     conductance = end.contact.conditions.conductance
-    return temperature_change(end.system, heat, thermal, found, conductance, time, near), None
+    return temperature_change(end.system, heat, thermal, found, conductance, time), None
 
 
 def _of_temperature(end: Snapshot, heated: TemperatureChange, enriched: np.ndarray) -> float | None:

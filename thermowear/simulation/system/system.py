@@ -19,9 +19,10 @@ from ...bulk.solvers.choice import SolverChoice
 from ...contact.operators.condensation import (
     CondensedContact,
     Influence,
+    component_traces,
+    in_directions,
     influence,
     pressure_loads,
-    vector_trace,
 )
 from ...contact.operators.coupled_heat import CoupledHeat
 from ...contact.operators.rigid_motion import RigidHolder, RigidMode, Sliding, hold
@@ -433,15 +434,6 @@ class System:
         """B_tᵀ, shape (n_owned, n), see `contact.search.pairing`; Bᵀ without in-plane friction."""
         if np.array_equal(self.traction_direction, self.contacts.normals):
             return self.trace
-        along = self.parts.get("traces", self.inputs.elasticity, self._along_coordinates)
-        first, *others = (
-            trace @ sp.diags(component)
-            for trace, component in zip(along, self.traction_direction.T, strict=True)
-        )
-        return sum(others, first)
-
-    def _along_coordinates(self) -> list[sp.csr_matrix]:
-        """Traces of the displacement along each coordinate, shape (n_owned, n) each."""
-        n, gdim = self.traction_direction.shape
-        units = (np.tile(unit, (n, 1)) for unit in np.eye(gdim))
-        return [vector_trace(self.elastic.spaces, self.contacts, unit) for unit in units]
+        spaces, made_from = self.elastic.spaces, self.inputs.elasticity
+        along = self.parts.get("traces", made_from, lambda: component_traces(spaces, self.contacts))
+        return in_directions(along, self.traction_direction)

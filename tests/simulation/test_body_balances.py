@@ -97,6 +97,33 @@ def test_a_moment_that_nothing_bears(monkeypatch):
     assert "balance of forces" not in reason
 
 
+VARYING = {
+    "bodies.upper.conductivity_factor": {"at": ["0 degC", "1000 degC"], "factor": [1.0, 0.2]},
+    "bodies.lower.conductivity_factor": {"at": ["0 degC", "500 degC"], "factor": [1.0, 0.5]},
+    "heat.temperature": {"upper_top": "800 degC", "lower_bottom": "100 degC"},
+}
+STORED = {"density": "7800 kg/m^3", "specific_heat": "480 J/(kg K)"}
+HEATED = {
+    "motion": None,
+    "wear": None,
+    "heat.transient": True,
+    "heat.initial": "20 degC",
+    "analysis": {"type": "transient", "end_time": "20 s"},
+    **{f"bodies.{body}.{key}": v for body in ("upper", "lower") for key, v in STORED.items()},
+}
+
+
+@pytest.mark.parametrize(
+    "changes", [{"analysis": {"type": "initial"}}, HEATED], ids=["steady", "in time"]
+)
+def test_conductivity_that_varies(changes):
+    """requirement: heat through surfaces of given temperature is that of the conductivity there."""
+    result = solved("stacked-blocks", VARYING | {"wear": None} | changes)
+    assert result.stopped is None
+    errors = [body["heat_balance_relative_error"] for body in result.summary["bodies"].values()]
+    assert max(errors) < 1e-7
+
+
 def lose_heat(monkeypatch, body):
     """Let a thousandth of the heat that a body exchanges vanish."""
     into_bodies = Conduction.into_bodies

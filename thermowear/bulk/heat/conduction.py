@@ -271,7 +271,7 @@ class Conduction:
         solver.getPC().setType(PETSc.PC.Type.JACOBI)
         solver.setTolerances(rtol=_RATE_TOLERANCE, max_it=200)
         x, b = matrix.createVecs()
-        b.setArray(self._free(heat - multiply(self.conductivity, rise)))
+        b.setArray(self._free(heat - self.conducted(rise)))
         solver.solve(b, x)
         return x.getArray().copy()
 
@@ -315,7 +315,7 @@ class Conduction:
         """
         lost = sum(self._per_rise) * rise  # the rise of the surroundings is in the heat
         joined = self.joint_heat(rise, heat)
-        lost[self.fixed] += (heat + joined - multiply(self.conductivity, rise))[self.fixed]
+        lost[self.fixed] += (heat + joined - self.conducted(rise))[self.fixed]
         rounding = _BALANCE_FLOOR * np.abs(self.conductivity.getDiagonal().getArray() * rise)
         return np.array(
             [heat + joined - lost, np.abs(heat) + np.abs(joined) + np.abs(lost) + rounding]
@@ -335,7 +335,11 @@ class Conduction:
         if not self._has_prescribed:
             return np.zeros(0)
         heat = heat + self.joint_heat(rise, heat)
-        return (heat - multiply(self.conductivity, rise))[self.fixed]
+        return (heat - self.conducted(rise))[self.fixed]
+
+    def conducted(self, rise: np.ndarray) -> np.ndarray:
+        """Nodal heat that a rise (n_owned,) conducts away, and that it loses by cooling [W]."""
+        return multiply(self.conductivity, rise)
 
     @cached_property
     def _from_prescribed(self) -> np.ndarray:

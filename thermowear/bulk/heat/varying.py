@@ -130,15 +130,9 @@ class VaryingConduction(Conduction):
     def balance_scale(self, rise: np.ndarray) -> float:
         return _NEWTON * super().balance_scale(rise)
 
-    def losses(self, rise, heat, ambient=0.0):
-        return super().losses(rise, heat + self._excess_flow(rise), ambient)
-
-    def exchanged_heat(self, rise, heat, ambient=0.0):
-        return super().exchanged_heat(rise, heat + self._excess_flow(rise), ambient)
-
-    def _excess_flow(self, rise: np.ndarray) -> np.ndarray:
-        """Negative of the nodal heat flow in excess of that at constant conductivity [W]."""
-        return -_products(len(rise), ((part.matrix, part.excess(rise)) for part in self.parts))
+    def conducted(self, rise: np.ndarray) -> np.ndarray:
+        excess = ((part.matrix, part.excess(rise)) for part in self.parts)
+        return super().conducted(rise) + _products(len(rise), excess)
 
 
 def varying_conduction(
